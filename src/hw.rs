@@ -1,0 +1,7 @@
+//! Bytes and devices. Each device is a pure protocol (bytes in, bytes out, a clock handed in), a thin adapter that owns the
+//! file descriptor, and a simulator.
+//!
+//! "Now" is a [`std::time::Duration`] since the program started, handed in by the caller: no protocol reads a clock.
+
+/// The telescope's mount: an LX200GPS and its dialect.
+pub mod mount;

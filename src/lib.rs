@@ -1,0 +1,33 @@
+//! scotopic augments the view through a goto telescope.
+//!
+//! ```text
+//! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue, ephemeris)
+//!                  -> picture (overlay, tone, adaptation) -> projector
+//! ```
+//!
+//! The modules stand in the order of that flow; `docs/architecture.md` says who may use whom.
+
+/// The session as a value: model, events, effects, one table of commands.
+pub mod app;
+/// The command line: parse, wire, run, print.
+pub mod cli;
+/// Bytes and devices: the mount and the projector, each a pure protocol, a thin adapter and a simulator.
+pub mod hw;
+/// Seeded random streams.
+pub mod numerics;
+/// What is in the field, drawn as the picture that the projector shows.
+pub mod overlay;
+/// What nature does: the bending of light by air.
+pub mod physics;
+/// An image in memory, linear light.
+pub mod picture;
+/// One frame of data from the mount to the eyepiece: the page to read.
+pub mod pipeline;
+/// May the telescope move there: the Sun, the limits, the turns of the cable.
+pub mod safety;
+/// Where things are: time, site, coordinates, catalogues, optics, the field of view.
+pub mod sky;
+/// Model to cells, keys to events; red only.
+pub mod tui;
+/// Angles and magnitudes as types; conversion only here.
+pub mod units;

@@ -1,0 +1,3 @@
+//! The `scotopic` program: parse, call, print the error.
+
+fn main() {}
