@@ -8,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 ///
 /// ```
 /// use scotopic::units::Angle;
-/// assert_eq!(Angle::degrees(180.0).to_hours(), 12.0);
+/// assert!((Angle::degrees(180.0).to_hours() - 12.0).abs() < 1e-12);
 /// assert!((Angle::arcseconds(3600.0).to_degrees() - 1.0).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]

@@ -11,7 +11,9 @@ pub struct SurfaceBrightness(pub f64);
 impl Magnitude {
     /// Flux relative to a star of magnitude zero.
     ///
-    ///     F = 10^(-0.4 m)          Pogson (1856)
+    /// ```text
+    /// F = 10^(-0.4 m)          Pogson (1856)
+    /// ```
     #[must_use]
     pub fn flux(self) -> f64 {
         10f64.powf(-0.4 * self.0)
@@ -21,7 +23,9 @@ impl Magnitude {
 impl SurfaceBrightness {
     /// Mean surface brightness of an ellipse of full axes `major` and `minor` in arcminutes.
     ///
-    ///     SB = m + 2.5 log10(pi/4 a b 3600)
+    /// ```text
+    /// SB = m + 2.5 log10(pi/4 a b 3600)
+    /// ```
     ///
     /// It is the mean out to the catalogue's isophote: cores are far brighter. Checked against M57 (8.8, 1.4' x 1.0') = 17.79.
     #[must_use]
@@ -31,7 +35,9 @@ impl SurfaceBrightness {
 
     /// Luminance in cd/m2.
     ///
-    ///     mu = 12.58 - 2.5 log10(B)          Crumey (2014), MNRAS 442, 2600
+    /// ```text
+    /// mu = 12.58 - 2.5 log10(B)          Crumey (2014), MNRAS 442, 2600
+    /// ```
     #[must_use]
     pub fn to_candela_per_m2(self) -> f64 {
         10f64.powf((12.58 - self.0) / 2.5)
