@@ -1,6 +1,8 @@
 //! Who may use whom: the imports in `src/**` held against the table of `docs/architecture.md`, and the documents and
 //! fixtures held against what is there.
 
+#![expect(clippy::expect_used, reason = "a test fails by panicking")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
