@@ -1,1 +1,140 @@
-//! Being built.
+//! The command line: parse, wire, run, print. One file a subcommand.
+//!
+//! Every subcommand answers on standard output (`--json` for machines), prints progress and notes on standard error, and
+//! exits 0 (done), 1 (it failed) or 2 (it was asked wrongly).
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+/// How a subcommand ends without doing what was asked.
+pub mod failure;
+/// The field session.
+pub mod observe;
+
+pub use failure::Failure;
+
+/// The whole command line.
+#[derive(Debug, Parser)]
+#[command(
+    name = "scotopic",
+    version,
+    about,
+    long_about = "Augments the view through a goto telescope: facts and pictures in the eyepiece, dim enough to stay dark adapted.\n\n\
+                  Without a subcommand it opens the field session (`observe`) with a simulated telescope.",
+    after_help = "Examples:\n  \
+        scotopic                                        the field session, on a simulated telescope\n  \
+        scotopic observe --mount serial:/dev/ttyUSB0    the field session, on yours\n  \
+        scotopic observe --help                         all its settings\n  \
+        scotopic completions bash > ~/.local/share/bash-completion/completions/scotopic",
+    subcommand_help_heading = "Commands",
+    disable_help_subcommand = true
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+/// What can be asked.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Point, see, know: the field session in a red terminal
+    Observe(Box<observe::Arguments>),
+    /// Print the completions of a shell
+    Completions {
+        /// The shell to complete in
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Parses the process' arguments, runs, prints the error, and gives the exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Nothing can be done about a terminal that does not take the message.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(std::io::stderr(), "scotopic: {}", printable(&failure.to_string()));
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => observe::run(&observe::Arguments::default()),
+        Some(Command::Observe(arguments)) => observe::run(&arguments),
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);
+            answer_bytes(&script)
+        }
+    }
+}
+
+/// Prints a line of the answer. A reader that has heard enough (`| head`) is no failure.
+///
+/// # Errors
+/// Standard output could not be written.
+pub fn answer(text: &str) -> Result<(), Failure> {
+    answer_bytes(format!("{text}\n").as_bytes())
+}
+
+/// Prints a value as the machine-readable answer: one line of JSON.
+///
+/// # Errors
+/// Standard output could not be written, or a number in the value is not finite.
+pub fn answer_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    answer(&serde_json::to_string(value).map_err(Failure::failed)?)
+}
+
+fn answer_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::failed(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Text from outside without control characters, so that it cannot move the cursor or colour the screen. Line ends stay.
+#[must_use]
+pub fn printable(text: &str) -> String {
+    text.chars().filter(|c| *c == '\n' || !c.is_control()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_southern_western_site_needs_no_equals_sign() {
+        let cli = Cli::try_parse_from(["scotopic", "observe", "--site", "-24.6,-70.4,2635"]).unwrap();
+        let Some(Command::Observe(arguments)) = cli.command else { panic!("observe was asked") };
+        assert_eq!(arguments.site.map(|site| site.latitude.to_degrees().round()), Some(-25.0));
+    }
+
+    #[test]
+    fn latitude_91_is_asked_wrongly() {
+        let error = Cli::try_parse_from(["scotopic", "observe", "--site", "91,0"]).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("91"), "{error}");
+    }
+
+    #[test]
+    fn escapes_do_not_reach_the_terminal() {
+        assert_eq!(printable("M\u{1b}[31m31\u{9b}2J\u{7}"), "M[31m312J");
+    }
+}

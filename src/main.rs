@@ -1,3 +1,5 @@
 //! The `scotopic` program: parse, call, print the error.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    scotopic::cli::main()
+}
