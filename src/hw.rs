@@ -5,3 +5,5 @@
 
 /// The telescope's mount: an LX200GPS and its dialect.
 pub mod mount;
+/// A line to a device, and why it failed.
+pub mod port;
