@@ -59,6 +59,12 @@ impl Utc {
 }
 
 impl Moment {
+    /// An instant with the delta T to use where none is given.
+    #[must_use]
+    pub fn at(utc: Utc) -> Moment {
+        Moment { utc, delta_t_s: super::delta_t::default_seconds(utc) }
+    }
+
     /// Terrestrial time as a two-part Julian date.
     #[must_use]
     pub fn tt(&self) -> (f64, f64) {

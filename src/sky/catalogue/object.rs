@@ -1,0 +1,132 @@
+//! What the catalogue says of one object, and the smaller forms in which a field's contents come.
+
+use super::kind::Kind;
+use crate::sky::astrometry::Astrometry;
+use crate::sky::coords::{Equatorial, J2000};
+use crate::units::{Angle, Magnitude, SurfaceBrightness};
+
+/// The band in which a magnitude was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Band {
+    /// Visual, 550 nm.
+    V,
+    /// Blue, 440 nm: used where no V is known.
+    B,
+}
+
+/// All that the catalogues say of one object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// The name to show: `M31`, `Vega`, `HIP 12345`.
+    pub name: String,
+    /// Every name, the one to show first.
+    pub names: Vec<String>,
+    /// What it is.
+    pub kind: Kind,
+    /// Hubble's type of a galaxy, as catalogued: `Sb`, `E2`.
+    pub hubble: Option<&'static str>,
+    /// Where it is and how it moves.
+    pub astrometry: Astrometry,
+    /// Total magnitude, in [`Object::band`].
+    pub magnitude: Option<Magnitude>,
+    /// The band of [`Object::magnitude`].
+    pub band: Band,
+    /// Colour index B-V.
+    pub colour_bv: Option<f32>,
+    /// Full major and minor axes in arcminutes; a round object has two equal ones.
+    pub axes_arcmin: Option<(f64, f64)>,
+    /// Position angle of the major axis, from north through east.
+    pub position_angle: Option<Angle>,
+    /// Mean surface brightness in V out to the catalogued axes: the core is far brighter.
+    pub surface_brightness: Option<SurfaceBrightness>,
+    /// The constellation's IAU abbreviation: `And`.
+    pub constellation: &'static str,
+}
+
+impl Object {
+    /// The magnitude, if it is one in V.
+    #[must_use]
+    pub fn v_magnitude(&self) -> Option<Magnitude> {
+        self.magnitude.filter(|_| self.band == Band::V)
+    }
+
+    /// What it is in plain words, finer than [`Kind::words`] where Hubble's type tells more: "spiral galaxy".
+    #[must_use]
+    pub fn type_words(&self) -> &'static str {
+        match (self.kind, self.hubble) {
+            (Kind::Galaxy, Some(hubble)) => galaxy_words(hubble),
+            (kind, _) => kind.words(),
+        }
+    }
+}
+
+/// Hubble's sequence in words.
+pub(super) fn galaxy_words(hubble: &str) -> &'static str {
+    let mut letters = hubble.trim_start_matches(['(', 'R', ')', '\'', '?', ' ']).chars();
+    match (letters.next(), letters.next()) {
+        (Some('S'), Some('0')) => "lenticular galaxy",
+        (Some('S'), Some('B')) => "barred spiral galaxy",
+        (Some('S'), _) => "spiral galaxy",
+        (Some('E'), _) => "elliptical galaxy",
+        (Some('I'), _) => "irregular galaxy",
+        _ => Kind::Galaxy.words(),
+    }
+}
+
+/// Which star of the catalogues this is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum StarId {
+    /// The number in the Hipparcos catalogue.
+    Hipparcos(u32),
+    /// The place in the packed catalogue of faint stars (it changes when the catalogue is made anew).
+    Faint(u32),
+}
+
+/// A star in a field: small, because there are hundreds. Ask the catalogue for its names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FieldStar {
+    /// Which star.
+    pub id: StarId,
+    /// Where it is and how it moves.
+    pub astrometry: Astrometry,
+    /// V magnitude.
+    pub v_mag: f32,
+    /// Colour index B-V, where known.
+    pub colour_bv: Option<f32>,
+    /// Distance from the centre that was asked for.
+    pub separation: Angle,
+}
+
+/// A deep-sky object in a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FieldObject {
+    /// The name to show: `M31`.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// Direction at J2000.
+    pub position: Equatorial<J2000>,
+    /// Total magnitude, in [`FieldObject::band`].
+    pub magnitude: Option<Magnitude>,
+    /// The band of [`FieldObject::magnitude`].
+    pub band: Band,
+    /// Full major and minor axes in arcminutes.
+    pub axes_arcmin: Option<(f64, f64)>,
+    /// Position angle of the major axis, from north through east.
+    pub position_angle: Option<Angle>,
+    /// Distance of its centre from the centre that was asked for.
+    pub separation: Angle,
+    /// The object's place in the catalogue, for [`super::Catalogue::object`].
+    pub index: usize,
+}
+
+/// What is in a field, each list nearest first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Found {
+    /// Stars inside.
+    pub stars: Vec<FieldStar>,
+    /// Deep-sky objects whose centre is inside.
+    pub objects: Vec<FieldObject>,
+    /// Large deep-sky objects whose centre is outside but whose outline may reach in.
+    pub reaching_in: Vec<FieldObject>,
+}
