@@ -23,3 +23,5 @@ pub mod estimate;
 pub mod link;
 /// What may be asked of the mount, and what it reports back.
 pub mod order;
+/// A simulated mount.
+pub mod sim;

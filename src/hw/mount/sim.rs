@@ -1,0 +1,140 @@
+//! A simulated LX200GPS: bytes in, bytes out, a clock handed in. It has its own reading and writing of bytes and shares
+//! nothing with the driver but the facts of the protocol.
+//!
+//! ```text
+//! bytes -> wire (9600 baud) -> framing (`:`...`#`) -> controller (the firmware) -> reply -> wire, with its faults -> bytes
+//!                                                      |
+//!                                                      tube (two axes that take time to move) -> where it really points
+//! ```
+//!
+//! It starts aligned, awake, tracking and above the horizon. What the sky sees ([`Simulator::true_axis`]) and what the mount
+//! says ([`Simulator::reported`]) differ by the pointing error, the periodic error, the drift and a push of the tube:
+//! these move the true axis and never the reported position.
+
+mod angles;
+mod answer;
+mod controller;
+mod earth;
+/// The faults that can be switched on, by name.
+pub mod fault;
+mod framing;
+mod handset;
+mod pointing;
+/// What the simulator is to be: site, time, seed, errors, faults.
+pub mod settings;
+mod tube;
+mod wire;
+
+use std::time::Duration;
+
+use self::controller::Controller;
+use self::framing::{Framing, Heard};
+use self::pointing::PointingError;
+use self::settings::Settings;
+use self::wire::Wire;
+use crate::sky::coords::{Equatorial, OfDate};
+
+/// The simulated mount. `now` is the time since the program started; [`Settings::start`] is the UTC of `now` = 0.
+#[derive(Debug)]
+pub struct Simulator {
+    wire: Wire,
+    framing: Framing,
+    controller: Controller,
+    error: PointingError,
+}
+
+impl Simulator {
+    /// A mount that stands as the settings say.
+    #[must_use]
+    pub fn new(settings: Settings) -> Simulator {
+        Simulator {
+            wire: Wire::new(&settings),
+            framing: Framing::default(),
+            error: PointingError::new(&settings),
+            controller: Controller::new(settings),
+        }
+    }
+
+    /// How many more bytes [`Simulator::feed`] takes before it loses some: the rest should wait in the sender's buffer.
+    #[must_use]
+    pub fn room(&self) -> usize {
+        self.wire.room()
+    }
+
+    /// Bytes from the computer, all handed over at `now`; the mount hears them one after the other at 9600 baud.
+    pub fn feed(&mut self, bytes: &[u8], now: Duration) {
+        self.wire.arrive(bytes, now);
+    }
+
+    /// Brings everything up to `now`: bytes are heard, commands obeyed, axes moved.
+    pub fn tick(&mut self, now: Duration) {
+        while let Some((byte, at)) = self.wire.next_heard(now) {
+            self.controller.advance(at);
+            let answer = match self.framing.push(byte) {
+                Heard::Nothing => continue,
+                Heard::Control(byte) => self.controller.control(byte, at),
+                Heard::Command(body) => {
+                    self.wire.command_heard(&body, at);
+                    self.controller.obey(&body, at)
+                }
+            };
+            self.wire.reply(answer, at);
+        }
+        self.controller.advance(now);
+        for answer in self.controller.unasked(now) {
+            self.wire.reply(answer, now);
+        }
+        self.wire.tick(now);
+    }
+
+    /// The bytes whose last bit has reached the computer by `now`.
+    pub fn drain(&mut self, now: Duration) -> Vec<u8> {
+        self.tick(now);
+        self.wire.sent(now)
+    }
+
+    /// When something will happen next without new bytes; `None` if only new bytes can change anything on the line.
+    #[must_use]
+    pub fn wake_at(&self) -> Option<Duration> {
+        self.wire.wake_at()
+    }
+
+    /// A client has opened the port: what it finds waiting (nothing, unless the fault `stale` is on).
+    pub fn client_came(&mut self, now: Duration) {
+        self.tick(now);
+        self.wire.client_came(now);
+    }
+
+    /// The client has closed the port: what was still to be sent to it is lost.
+    pub fn client_left(&mut self, now: Duration) {
+        self.tick(now);
+        self.wire.client_left();
+    }
+
+    /// Whether the cable is in: `false` while the fault `unplug` has it out.
+    #[must_use]
+    pub fn plugged(&self, now: Duration) -> bool {
+        self.wire.plugged(now)
+    }
+
+    /// Where the optical axis really points.
+    pub fn true_axis(&mut self, now: Duration) -> Equatorial<OfDate> {
+        self.tick(now);
+        self.controller.sky_of(self.error.apply(self.controller.encoders(), now), now)
+    }
+
+    /// Where the mount believes it points, before it rounds to whole seconds for a reply.
+    pub fn reported(&mut self, now: Duration) -> Equatorial<OfDate> {
+        self.tick(now);
+        self.controller.reported(now)
+    }
+
+    /// Speeds of the azimuth and the altitude axis in degrees a second.
+    pub fn axis_speeds_deg_s(&mut self, now: Duration) -> (f64, f64) {
+        self.tick(now);
+        self.controller.axis_speeds()
+    }
+}
+
+#[cfg(test)]
+mod tests;
