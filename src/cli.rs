@@ -12,6 +12,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 pub mod failure;
 /// The field session.
 pub mod observe;
+/// Devices that are not there.
+pub mod simulate;
 
 pub use failure::Failure;
 
@@ -41,6 +43,9 @@ pub struct Cli {
 enum Command {
     /// Point, see, know: the field session in a red terminal
     Observe(Box<observe::Arguments>),
+    /// Play a device that is not there, on a port that other programs open
+    #[command(subcommand)]
+    Simulate(simulate::Device),
     /// Print the completions of a shell
     Completions {
         /// The shell to complete in
@@ -72,6 +77,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => observe::run(&observe::Arguments::default()),
         Some(Command::Observe(arguments)) => observe::run(&arguments),
+        Some(Command::Simulate(device)) => simulate::run(&device),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);

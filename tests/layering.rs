@@ -36,6 +36,9 @@ const ADAPTERS: &[&str] = &[
     "src/hw/trace.rs",
     "src/hw/supervisor.rs",
     "src/hw/mount/link.rs",
+    "src/hw/mount/sim/serve.rs",
+    "src/hw/mount/sim/serve/pty.rs",
+    "src/hw/mount/sim/serve/tcp.rs",
 ];
 
 /// Words that stand for a device, a file, a thread or a clock.

@@ -20,6 +20,10 @@ pub mod fault;
 mod framing;
 mod handset;
 mod pointing;
+/// The simulator as a port inside the program.
+pub mod port;
+/// The simulator behind a real port.
+pub mod serve;
 /// What the simulator is to be: site, time, seed, errors, faults.
 pub mod settings;
 mod tube;

@@ -36,6 +36,15 @@ pub struct Settings {
     pub faults: Faults,
 }
 
+impl Settings {
+    /// The default mount at this site, its clock started here, in the zone of the site's longitude.
+    #[must_use]
+    pub fn at(site: Site, start: Utc) -> Settings {
+        let zone_h = -(site.longitude.to_degrees() / 15.0).round();
+        Settings { site, start, zone_h, ..Settings::default() }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Settings {
         Settings {

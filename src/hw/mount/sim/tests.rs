@@ -18,5 +18,5 @@ fn it_starts_aligned_awake_tracking_and_above_the_horizon() {
     let (mut simulator, mut now) = (simulator(), Duration::ZERO);
     assert_eq!(ask(&mut simulator, &mut now, b":GW#", 100), b"AT2");
     assert_eq!(ask(&mut simulator, &mut now, b"\x06", 100), b"A");
-    assert_eq!(ask(&mut simulator, &mut now, b":GA#", 100), b"+45\xDF00:00#");
+    assert!(ask(&mut simulator, &mut now, b":GA#", 100).starts_with(b"+45\xDF00:0"));
 }
