@@ -7,3 +7,5 @@
 pub mod mount;
 /// A line to a device, and why it failed.
 pub mod port;
+/// The projector: framebuffer, files, memory, window.
+pub mod projector;

@@ -2,6 +2,13 @@
 
 use std::fmt;
 
+/// Making a picture fit another size, and mirroring it.
+mod fit;
+/// Pictures as PNG files in memory.
+pub mod png;
+/// Between linear light and 8-bit codes.
+pub mod srgb;
+
 /// A rectangle of linear-light RGB pixels, row 0 on top, 0 black to 1 the projector's full drive.
 ///
 /// f32: the projector has 8 bits and the eye 2 % steps; 24 bits of mantissa leave room for blending.

@@ -16,6 +16,8 @@ pub mod horizon;
 pub mod optics;
 /// Where the telescope points, and how sure that is.
 pub mod pointing;
+/// From a direction on the sky to a pixel of the canvas, and back.
+pub mod project;
 /// Where on Earth the observer stands.
 pub mod site;
 /// The Sun's place, and the middle of the coming night.

@@ -1,1 +1,24 @@
-//! Being built.
+//! What the optics do to the view: telescope, eyepieces and projector, read from one TOML file, and the numbers that follow.
+//!
+//! ```
+//! use scotopic::sky::optics::Instrument;
+//! let thesis = Instrument::default().with_eyepiece(24.0);
+//! assert_eq!(thesis.magnification().round(), 104.0);
+//! ```
+
+/// One eyepiece: focal length, apparent field, field stop.
+pub mod eyepiece;
+/// Telescope, eyepieces and projector together, one eyepiece in use.
+pub mod instrument;
+/// The faintest star that can be seen.
+pub mod limit;
+/// The projector's rectangle in the focal plane.
+pub mod projector;
+/// The tube, its mirrors, and the mounting that carries it.
+pub mod telescope;
+
+pub use eyepiece::Eyepiece;
+pub use instrument::{Instrument, InstrumentError};
+pub use limit::limiting_magnitude;
+pub use projector::{Coverage, ProjectorGeometry};
+pub use telescope::{Diagonal, Mounting, Telescope};

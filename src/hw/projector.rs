@@ -1,0 +1,178 @@
+//! The projector: where pictures go. Every sink shows black when it is opened, when it is told to go dark, and when it is
+//! dropped, so a picture never outlives the program that put it there.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use crate::picture::Picture;
+
+/// Pictures into a folder of PNG files.
+pub mod folder;
+/// The Linux framebuffer device.
+pub mod framebuffer;
+/// The pure part of the framebuffer: the device's geometry, and pixels into its bytes.
+pub mod geometry;
+/// The two calls into the kernel that the framebuffer needs.
+mod ioctl;
+/// Pictures kept in memory, for tests and previews.
+pub mod memory;
+
+pub use geometry::Flip;
+pub use memory::{Memory, Nowhere};
+
+/// Something that shows pictures to the eyepiece.
+pub trait Projector: Send {
+    /// Shows a picture.
+    ///
+    /// # Errors
+    /// The device is gone or refuses: the sentence says what to do.
+    fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError>;
+
+    /// Shows black. Must work at any time, after errors too.
+    ///
+    /// # Errors
+    /// The device is gone or refuses.
+    fn dark(&mut self) -> Result<(), ProjectorError>;
+
+    /// What it is, in words for the screen: `framebuffer /dev/fb0, 1024 x 768, 32 bit`.
+    fn describe(&self) -> String;
+}
+
+/// Where pictures shall go.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum ProjectorAddress {
+    /// Nowhere: no projector.
+    #[default]
+    None,
+    /// A Linux framebuffer device.
+    Framebuffer(PathBuf),
+    /// A folder that gets PNG files.
+    Folder(PathBuf),
+    /// A full-screen window, on the monitor of that name when one is given.
+    Window(Option<String>),
+}
+
+impl FromStr for ProjectorAddress {
+    type Err = ProjectorError;
+
+    /// Reads `none`, `fb:/dev/fb0`, `png:DIR`, `window` or `window:MONITOR`.
+    fn from_str(text: &str) -> Result<ProjectorAddress, ProjectorError> {
+        match text.split_once(':') {
+            _ if text == "none" => Ok(ProjectorAddress::None),
+            _ if text == "window" => Ok(ProjectorAddress::Window(None)),
+            Some(("fb", path)) if !path.is_empty() => Ok(ProjectorAddress::Framebuffer(path.into())),
+            Some(("png", path)) if !path.is_empty() => Ok(ProjectorAddress::Folder(path.into())),
+            Some(("window", name)) if !name.is_empty() => Ok(ProjectorAddress::Window(Some(name.into()))),
+            _ => Err(ProjectorError::Address(text.chars().filter(|c| !c.is_control()).take(80).collect())),
+        }
+    }
+}
+
+impl fmt::Display for ProjectorAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ProjectorAddress::None => write!(f, "none"),
+            ProjectorAddress::Framebuffer(path) => write!(f, "fb:{}", path.display()),
+            ProjectorAddress::Folder(path) => write!(f, "png:{}", path.display()),
+            ProjectorAddress::Window(None) => write!(f, "window"),
+            ProjectorAddress::Window(Some(name)) => write!(f, "window:{name}"),
+        }
+    }
+}
+
+/// Why the projector shows nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProjectorError {
+    /// The address was not understood.
+    #[error("'{0}' is no projector: give none, fb:/dev/fb0, png:FOLDER, window or window:MONITOR")]
+    Address(String),
+    /// This program was built without windows.
+    #[error(
+        "this scotopic was built without windows: build it with `cargo build --release --features window`, or use fb: or png:"
+    )]
+    NoWindows,
+    /// The device or folder cannot be opened.
+    #[error("the projector {path} cannot be opened: {why}{}", advice(why))]
+    Open {
+        /// Device or folder.
+        path: String,
+        /// What the system says.
+        why: String,
+    },
+    /// The device answers, but is nothing that pictures can be written to.
+    #[error("the projector {path} cannot show pictures: {why}")]
+    Geometry {
+        /// The device.
+        path: String,
+        /// What is wrong with it.
+        why: geometry::GeometryError,
+    },
+    /// It worked and stopped working.
+    #[error("the projector {path} stopped taking pictures: {why}; check its cable and power")]
+    Lost {
+        /// Device or folder.
+        path: String,
+        /// What the system says.
+        why: String,
+    },
+    /// No monitor has that name.
+    #[error("no monitor is called '{wanted}': there is {}", list(found))]
+    NoMonitor {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        found: Vec<String>,
+    },
+}
+
+/// What to do about the commonest refusals of a device.
+fn advice(why: &str) -> &'static str {
+    if why.contains("ermission denied") {
+        "; add yourself to the group `video` and log in again"
+    } else if why.contains("No such file") {
+        "; list what is there with `ls /dev/fb*`"
+    } else {
+        ""
+    }
+}
+
+fn list(found: &[String]) -> String {
+    if found.is_empty() { "no monitor at all".into() } else { found.join(", ") }
+}
+
+/// Opens a projector and makes it dark. `flip` is applied to every picture.
+///
+/// # Errors
+/// It cannot be opened: the sentence says why and what to do.
+pub fn open(address: &ProjectorAddress, flip: Flip) -> Result<Box<dyn Projector>, ProjectorError> {
+    Ok(match address {
+        ProjectorAddress::None => Box::new(Nowhere),
+        ProjectorAddress::Framebuffer(path) => Box::new(framebuffer::Framebuffer::open(path, flip)?),
+        ProjectorAddress::Folder(path) => Box::new(folder::Folder::open(path, flip)?),
+        ProjectorAddress::Window(_) => return Err(ProjectorError::NoWindows),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_read_and_written_alike() {
+        for text in ["none", "fb:/dev/fb1", "png:/tmp/frames", "window", "window:HDMI-A-2"] {
+            assert_eq!(text.parse::<ProjectorAddress>().unwrap().to_string(), text);
+        }
+        for wrong in ["", "fb", "fb:", "hdmi", "png:", "window:"] {
+            assert!(matches!(wrong.parse::<ProjectorAddress>(), Err(ProjectorError::Address(_))), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_device_that_is_not_there_is_a_sentence_with_advice() {
+        let Err(error) = open(&ProjectorAddress::Framebuffer("/dev/fb-none".into()), Flip::default()) else {
+            panic!("there is no such device")
+        };
+        assert!(error.to_string().contains("/dev/fb-none") && error.to_string().contains("ls /dev/fb*"), "{error}");
+    }
+}
