@@ -21,8 +21,12 @@ pub mod suspend;
 /// The turns of the azimuth axis, counted since the cable was last unwound.
 pub mod turns;
 
+mod axes;
 mod goto;
+mod limits;
 mod motion;
+mod sunlight;
+mod sweep;
 
 pub use clock::Clock;
 pub use goto::judge_goto;

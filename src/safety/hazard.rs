@@ -128,6 +128,14 @@ pub enum Hazard {
         /// The floor in force.
         floor: Angle,
     },
+    /// What is tracked climbs above the ceiling soon.
+    #[error("the target climbs above {} in {minutes:.0} min", Deg(*ceiling))]
+    Climbs {
+        /// Until then.
+        minutes: f64,
+        /// The ceiling in force.
+        ceiling: Angle,
+    },
     /// What is tracked is, or comes, close to the zenith.
     #[error("the target comes within {} of the zenith in the next hour, where the azimuth axis runs fast and the field turns quickly", Deg(*distance))]
     NearZenith {
@@ -188,6 +196,7 @@ impl Hazard {
             Hazard::TooHigh { .. } => "choose something lower, or wait until it has passed the zenith".into(),
             Hazard::Returning { .. } => "nothing: motion back inside is allowed".into(),
             Hazard::Sets { .. } => "look at it now".into(),
+            Hazard::Climbs { .. } => "look at it now; the telescope is stopped a degree above the ceiling".into(),
             Hazard::NearZenith { .. } => "expect the picture to turn; wait until it has passed for a quiet view".into(),
             Hazard::Wound { turned, .. } => format!(
                 "turn the telescope back with the hand controller, {} from above, until the cable hangs free, then mark it unwound",

@@ -113,6 +113,8 @@ impl Rules {
         let default = Rules::default();
         self.sun_cone_deg < default.sun_cone_deg
             || self.sun_counts_above_deg > default.sun_counts_above_deg
+            || self.path_slack_deg < default.path_slack_deg
+            || self.reaction_s < default.reaction_s
             || !self.either_way_round
     }
 
@@ -127,6 +129,8 @@ impl Rules {
         Rules {
             sun_cone_deg: self.sun_cone_deg.max(default.sun_cone_deg),
             sun_counts_above_deg: self.sun_counts_above_deg.min(default.sun_counts_above_deg),
+            path_slack_deg: self.path_slack_deg.max(default.path_slack_deg),
+            reaction_s: self.reaction_s.max(default.reaction_s),
             either_way_round: true,
             ..*self
         }
