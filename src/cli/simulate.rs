@@ -1,11 +1,15 @@
 //! `scotopic simulate`: a device that is not there, on a port that other programs open.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::{Args, Subcommand};
 
+mod record;
+
+use self::record::Recorder;
 use super::{Failure, answer, answer_json};
 use crate::hw::mount::sim::Simulator;
 use crate::hw::mount::sim::fault::{Faults, TABLE};
@@ -52,6 +56,9 @@ pub struct Mount {
     /// Hand bytes on every 16 ms only, as a USB adapter does
     #[arg(long)]
     usb_batching: bool,
+    /// Write every byte that passes, with its time, to this file: JSON lines after a header
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// With `--fault list`: the list as JSON (the endpoint is JSON anyway)
     #[arg(long)]
     json: bool,
@@ -66,13 +73,18 @@ pub fn run(device: &Device) -> Result<(), Failure> {
     if mount.faults.iter().any(|fault| fault == "list") {
         return list_faults(mount.json);
     }
-    let simulator = Simulator::new(settings(mount)?);
+    let settings = settings(mount)?;
+    let recorder = mount.record.as_ref().map(|path| Recorder::create(path, mount, &settings)).transpose()?;
+    let simulator = Simulator::new(settings);
     let ended = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT, signal_hook::consts::SIGHUP] {
         signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(Failure::failed)?;
     }
     let mut server = Server::open(simulator, mount.listen)
         .map_err(|error| Failure::Failed(format!("the simulator cannot listen at {:?}: {error}", mount.listen)))?;
+    if let Some(recorder) = recorder {
+        server.watch(recorder.watcher());
+    }
     say_endpoint(&server.endpoint())?;
     server
         .serve(&|| ended.load(Ordering::Relaxed), &mut |endpoint| {

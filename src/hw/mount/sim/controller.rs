@@ -139,7 +139,9 @@ impl Controller {
             .or_else(|| self.tell_position(body, at))
             .or_else(|| self.calendar.tell(body, form, at))
             .or_else(|| self.odds.tell(body))
-            .or_else(|| (body == b"GT").then(|| Answer::text(&format!("{:+.1}", self.tube.rate_hz()))))
+            .or_else(|| {
+                (body == b"GT").then(|| Answer::text(&format!("{:+.1}", (self.tube.rate_hz() * 10.0).floor() / 10.0)))
+            })
     }
 
     /// `:S...#`: one space may stand after the two letters.

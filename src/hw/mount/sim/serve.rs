@@ -74,13 +74,29 @@ enum Happened {
     Bytes(Vec<u8>),
 }
 
+/// What passed on the line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passed<'a> {
+    /// A client opened it.
+    ClientCame,
+    /// The client closed it.
+    ClientLeft,
+    /// Bytes to the mount.
+    ToMount(&'a [u8]),
+    /// Bytes from the mount.
+    FromMount(&'a [u8]),
+}
+
+/// Hears all that passes, with the time since the start.
+pub type Watcher = Box<dyn FnMut(Duration, Passed<'_>)>;
+
 /// A simulator that listens.
-#[derive(Debug)]
 pub struct Server {
     simulator: Simulator,
     line: Box<dyn Line>,
     plugged: bool,
     start: Instant,
+    watcher: Watcher,
 }
 
 impl Server {
@@ -93,7 +109,7 @@ impl Server {
             Listen::Pty => Box::new(Pty::open()?),
             Listen::Tcp(address) => Box::new(Tcp::open(address)?),
         };
-        Ok(Server { simulator, line, plugged: true, start: Instant::now() })
+        Ok(Server { simulator, line, plugged: true, start: Instant::now(), watcher: Box::new(|_, _| {}) })
     }
 
     /// What a client opens: `tcp:127.0.0.1:PORT`, or the path of the pty.
@@ -102,13 +118,18 @@ impl Server {
         self.line.endpoint()
     }
 
+    /// Tells this watcher all that passes on the line.
+    pub fn watch(&mut self, watcher: Watcher) {
+        self.watcher = watcher;
+    }
+
     /// Serves client after client until `ended` says so; `renamed` hears each new name of the port.
     ///
     /// # Errors
     /// The system's, when the place to listen is lost.
     pub fn serve(&mut self, ended: &dyn Fn() -> bool, renamed: &mut dyn FnMut(&str)) -> io::Result<()> {
         while !ended() {
-            let now = self.start.elapsed();
+            let now = self.now();
             self.simulator.tick(now);
             if self.simulator.plugged(now) != self.plugged {
                 self.plugged = !self.plugged;
@@ -127,10 +148,16 @@ impl Server {
         Ok(())
     }
 
+    /// Time since the start in whole microseconds, as recordings have it.
+    fn now(&self) -> Duration {
+        Duration::from_micros(u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX))
+    }
+
     /// Hands bytes on, both ways.
     fn pass_on(&mut self, now: Duration) -> io::Result<()> {
         let bytes = self.simulator.drain(now);
         if !bytes.is_empty() {
+            (self.watcher)(now, Passed::FromMount(&bytes));
             self.line.send(&bytes);
         }
         let nap = self.simulator.wake_at().map_or(LONGEST_NAP, |at| at.saturating_sub(now).min(LONGEST_NAP));
@@ -139,12 +166,21 @@ impl Server {
             return Ok(());
         }
         let happened = self.line.wait(nap, self.simulator.room())?;
-        let now = self.start.elapsed();
+        let now = self.now();
         match happened {
             Happened::Nothing => {}
-            Happened::Came => self.simulator.client_came(now),
-            Happened::Left => self.simulator.client_left(now),
-            Happened::Bytes(bytes) => self.simulator.feed(&bytes, now),
+            Happened::Came => {
+                (self.watcher)(now, Passed::ClientCame);
+                self.simulator.client_came(now);
+            }
+            Happened::Left => {
+                (self.watcher)(now, Passed::ClientLeft);
+                self.simulator.client_left(now);
+            }
+            Happened::Bytes(bytes) => {
+                (self.watcher)(now, Passed::ToMount(&bytes));
+                self.simulator.feed(&bytes, now);
+            }
         }
         Ok(())
     }

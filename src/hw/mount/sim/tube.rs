@@ -86,6 +86,12 @@ pub(super) struct Tube {
     acceleration: f64,
 }
 
+/// The next step after a time.
+fn grid_after(at: Duration) -> Duration {
+    let steps = at.as_nanos() / STEP.as_nanos() + 1;
+    STEP * u32::try_from(steps).unwrap_or(u32::MAX)
+}
+
 impl Tube {
     pub(super) fn new(settings: &Settings) -> Tube {
         let latitude_deg = settings.site.latitude.to_degrees();
@@ -140,7 +146,7 @@ impl Tube {
     /// Right ascension and declination that the mount believes, degrees.
     pub(super) fn believed(&self, now: Duration) -> (f64, f64) {
         let (azimuth, altitude) = self.encoders();
-        self.sky_of((azimuth + self.sync.0, altitude + self.sync.1), now)
+        self.sky_of((azimuth + self.sync.0, altitude + self.sync.1), if self.moving { self.at } else { now })
     }
 
     pub(super) fn speeds(&self) -> (f64, f64) {
@@ -206,13 +212,18 @@ impl Tube {
         self.rest();
     }
 
-    /// Brings the axes up to `now`.
+    /// Brings the axes up to `now`. While they move, that is the last step before it: steps stand on a grid of their own, so
+    /// that a run does not depend on how often it is looked at.
     pub(super) fn advance(&mut self, now: Duration) {
         self.at = self.at.max(now.saturating_sub(LONGEST));
         while self.at < now {
             if self.moving {
-                let step = STEP.min(now - self.at);
-                self.at += step;
+                let next = grid_after(self.at);
+                if next > now {
+                    return;
+                }
+                let step = next - self.at;
+                self.at = next;
                 self.step(step.as_secs_f64());
             } else {
                 let passed = now - self.at;

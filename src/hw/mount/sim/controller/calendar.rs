@@ -103,7 +103,8 @@ impl Calendar {
 
     /// `sHH#`, or `sHH.H#` where the zone is no whole hour.
     fn zone(&self) -> Vec<u8> {
-        let hours = self.to_utc_h();
+        // Adding zero takes the sign from a negative zero.
+        let hours = self.to_utc_h() + 0.0;
         if hours.fract() == 0.0 {
             format!("{hours:+03.0}#").into_bytes()
         } else {
