@@ -7,8 +7,25 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::Failure;
+use crate::hw::mount::address::MountAddress;
+use crate::hw::projector::ProjectorAddress;
 use crate::sky::site::Site;
 use crate::sky::time::Utc;
+
+/// Clocks: the machine's, or one that runs as fast as the machine can.
+mod clock;
+/// The line to the mount: a thread, or stepped by a virtual clock.
+mod line;
+/// Everything that is opened before the session begins.
+mod opening;
+/// Pictures to the projector, and how old they are when they get there.
+mod projection;
+/// The one event loop.
+mod session;
+/// SIGTERM, SIGINT, SIGHUP.
+mod signals;
+/// What a session without a terminal ends with.
+mod summary;
 
 /// What the session is opened with. Everything left out comes from the settings file, then from the defaults.
 #[derive(Debug, Clone, Default, Args)]
@@ -17,29 +34,36 @@ use crate::sky::time::Utc;
     scotopic observe --mount serial:/dev/serial/by-id/usb-FTDI_...-if00-port0\n  \
     scotopic observe --mount tcp:192.168.4.1:4030 --projector fb:/dev/fb0\n  \
     scotopic observe --site -24.6,-70.4,2635 --time 2026-11-22T02:00:00Z\n  \
-    scotopic observe --headless --for 60 --projector png:frames   no terminal; ends with a JSON summary")]
+    scotopic observe --headless --for 60 --goto M31 --projector png:frames\n  \
+    scotopic observe --headless --for 21600 --fast            six hours of a simulated night in a minute")]
 pub struct Arguments {
     /// The mount: sim, serial:PATH[@BAUD] or tcp:HOST:PORT [default: the settings', else sim]
     #[arg(long, value_name = "MOUNT")]
-    pub mount: Option<String>,
+    pub mount: Option<MountAddress>,
     /// Where the picture goes: window, fb:/dev/fbN, png:DIR or none [default: the settings', else none]
     #[arg(long, value_name = "PROJECTOR")]
-    pub projector: Option<String>,
+    pub projector: Option<ProjectorAddress>,
     /// Settings file [default: scotopic/settings.toml in the user's configuration folder]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// Observing site: latitude, longitude (east positive), elevation in metres
     #[arg(long, value_name = "LAT,LON,ELEV", allow_hyphen_values = true)]
     pub site: Option<Site>,
-    /// Time to start at, for a simulated telescope: 2026-11-22T20:00:00Z
+    /// Date and time to begin at, instead of this computer's: 2026-11-22T20:00:00Z
     #[arg(long, value_name = "RFC3339", value_parser = Utc::from_rfc3339)]
     pub time: Option<Utc>,
     /// Run without a terminal; ends with a JSON summary on standard output
     #[arg(long)]
     pub headless: bool,
     /// How long a session without a terminal lasts, in seconds
-    #[arg(long = "for", value_name = "SECONDS", requires = "headless")]
+    #[arg(long = "for", value_name = "SECONDS", requires = "headless", required_if_eq("headless", "true"))]
     pub seconds: Option<f64>,
+    /// Without a terminal: search this and go there as soon as the mount answers (may be given many times)
+    #[arg(long, value_name = "NAME", requires = "headless")]
+    pub goto: Vec<String>,
+    /// Without a terminal, on a simulated telescope: time runs as fast as this computer can make it
+    #[arg(long, requires = "headless")]
+    pub fast: bool,
 }
 
 /// Runs the session.
@@ -53,5 +77,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "there is no terminal here to draw the session in: start it in a terminal, or add --headless --for SECONDS",
         ));
     }
-    Err(Failure::failed("the session is not built yet"))
+    let seconds = arguments.seconds.unwrap_or(f64::INFINITY);
+    if arguments.headless && !(seconds > 0.0 && seconds <= 604_800.0) {
+        return Err(Failure::Asked(format!(
+            "--for {seconds} is no length of a session: give 1 to 604800 seconds (a week)"
+        )));
+    }
+    let opened = opening::open(arguments)?;
+    if arguments.headless {
+        session::without_terminal(opened, seconds, &arguments.goto)
+    } else {
+        session::in_terminal(opened)
+    }
 }

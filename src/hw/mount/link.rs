@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::belief::Belief;
-use super::driver::{Driver, Settings};
+use super::driver::{Driver, Ours, Settings};
 use super::order::{Order, Report};
 use crate::hw::port::{Port, PortError};
 
@@ -49,6 +49,11 @@ impl Pump {
     /// Gives an order.
     pub fn order(&mut self, order: Order, now: Duration) {
         self.driver.order(order, now);
+    }
+
+    /// Forgets all that is believed and asks anew: after a suspend.
+    pub fn forget(&mut self, ours: Ours, now: Duration) {
+        self.driver.forget(ours, now);
     }
 
     /// When [`Pump::step`] wants to be called at the latest, if no bytes come.

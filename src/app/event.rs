@@ -1,0 +1,26 @@
+//! What happens to the session.
+
+use std::sync::Arc;
+
+use super::key::Key;
+use crate::hw::mount::belief::Belief;
+use crate::hw::mount::order::Report;
+use crate::picture::Picture;
+use crate::safety::suspend::Clocks;
+
+/// Something that happened.
+#[derive(Debug, Clone)]
+pub enum Event {
+    /// A key was pressed.
+    Key(Key),
+    /// Time has passed: the clocks, read together.
+    Clocks(Clocks),
+    /// The mount told something.
+    Mount(Box<Belief>, Vec<Report>),
+    /// The picture was handed to the projector.
+    Shown(Arc<Picture>),
+    /// The projector could not show it: why, and what to do.
+    ProjectorFailed(String),
+    /// Somebody outside asks the session to end.
+    AskedToEnd,
+}

@@ -1,0 +1,53 @@
+//! What is to be drawn, and whether it differs from what was drawn: less than half a pixel is not drawn again.
+
+use crate::overlay::style::Mode;
+use crate::sky::coords::{Equatorial, J2000};
+use crate::sky::optics::Instrument;
+use crate::sky::pointing::Pointing;
+use crate::sky::site::Site;
+use crate::sky::time::Moment;
+use crate::units::Angle;
+
+/// A movement under this share of a pixel cannot be seen.
+const SEEN_PX: f64 = 0.5;
+
+/// From the canvas' middle to its corner, pixels.
+const REACH_PX: f64 = 640.0;
+
+/// All that one frame is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Where the telescope points, nudge included.
+    pub pointing: Pointing,
+    /// Through what it looks.
+    pub instrument: Instrument,
+    /// When.
+    pub moment: Moment,
+    /// From where.
+    pub site: Option<Site>,
+    /// How the field stands against the horizon: the parallactic angle.
+    pub rotation: Angle,
+    /// Over the object, beside it.
+    pub mode: Mode,
+    /// How bright the picture is, 0 to 1.
+    pub brightness: f32,
+    /// The object whose facts are told, if one was chosen.
+    pub target: Option<(String, Equatorial<J2000>)>,
+}
+
+impl Scene {
+    /// Whether the eye could tell the two apart.
+    #[must_use]
+    pub fn differs(&self, drawn: &Scene) -> bool {
+        let pixel = self.instrument.pixel_scale();
+        let moved_px = self.pointing.position.separation(&drawn.pointing.position) / pixel;
+        let surer_px = (self.pointing.uncertainty - drawn.pointing.uncertainty).abs() / pixel;
+        let turned_px = (self.rotation - drawn.rotation).wrapped_signed().abs().to_radians() * REACH_PX;
+        moved_px >= SEEN_PX
+            || surer_px >= 2.0
+            || turned_px >= SEEN_PX
+            || (&self.instrument, self.mode, self.brightness, &self.target)
+                != (&drawn.instrument, drawn.mode, drawn.brightness, &drawn.target)
+            || self.site != drawn.site
+    }
+}

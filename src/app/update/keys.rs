@@ -1,0 +1,208 @@
+//! Keys: looked up in the table of commands, and done.
+
+use super::goto;
+use crate::app::commands::{Action, meaning};
+use crate::app::effect::Effect;
+use crate::app::key::{Arrow, Key};
+use crate::app::log::{KEPT, Weight};
+use crate::app::model::{Model, Screen};
+use crate::app::search::Search;
+use crate::hw::mount::order::Order;
+use crate::sky::catalogue::Catalogue;
+use crate::sky::field::FieldOfView;
+
+/// An arrow pushes the picture by so many pixels: half a field takes thirty.
+const PUSH_PX: f64 = 8.0;
+
+/// A picture is not pushed farther than this: whoever needs more should sync.
+const FARTHEST_DEG: f64 = 5.0;
+
+/// So many lines are a page.
+const PAGE: usize = 10;
+
+/// A key was pressed.
+pub(super) fn pressed(model: &mut Model, key: Key) -> Vec<Effect> {
+    match meaning(model, key) {
+        Some(action) => {
+            let effects = done(model, action);
+            if key == Key::Esc {
+                model.show(Screen::Sky);
+            }
+            effects
+        }
+        None if model.view.screen == Screen::Search => typed(model, key),
+        None => Vec::new(),
+    }
+}
+
+/// A key that belongs to the search box.
+fn typed(model: &mut Model, key: Key) -> Vec<Effect> {
+    match key {
+        Key::Char(c) => model.search.typed(c),
+        Key::Backspace if model.search.text.is_empty() => model.show(Screen::Sky),
+        Key::Backspace => model.search.rubbed_out(),
+        Key::Tab => model.search.completed(),
+        Key::Arrow(Arrow::Down) => model.search.bar_moved(1),
+        Key::Arrow(Arrow::Up) => model.search.bar_moved(-1),
+        Key::Enter => match model.search.meant.clone() {
+            Some(object) => {
+                model.target = Some(object);
+                model.show(Screen::Sky);
+                return goto::go(model);
+            }
+            None => {
+                let text = format!("nothing is called '{}'", model.search.text);
+                model.say(Weight::Note, &text, "choose one of the offered names with ↓");
+            }
+        },
+        _ => {}
+    }
+    Vec::new()
+}
+
+fn done(model: &mut Model, action: Action) -> Vec<Effect> {
+    match action {
+        Action::Stop => return goto::stop(model),
+        Action::Search => {
+            model.search = Search::default();
+            model.show(Screen::Search);
+        }
+        Action::Goto => return goto::go(model),
+        Action::NextObject => next_object(model),
+        Action::NextEyepiece => return use_eyepiece(model, model.instrument.eyepiece_index() + 1),
+        Action::PreviousEyepiece => {
+            let count = model.instrument.eyepieces.len();
+            return use_eyepiece(model, model.instrument.eyepiece_index() + count.saturating_sub(1));
+        }
+        Action::ChooseEyepiece => return use_eyepiece(model, model.view.bar),
+        Action::OverlayMode => model.overlay.mode = model.overlay.mode.next(),
+        Action::OverlayBrighter => model.overlay.brightness = (model.overlay.brightness + 1).min(10),
+        Action::OverlayDimmer => model.overlay.brightness = model.overlay.brightness.saturating_sub(1).max(1),
+        Action::ScreenBrighter => model.view.brightness = (model.view.brightness + 1).min(10),
+        Action::ScreenDimmer => model.view.brightness = model.view.brightness.saturating_sub(1).max(1),
+        Action::Nudge(arrow) => nudge(model, arrow, PUSH_PX),
+        Action::NudgeFinely(arrow) => nudge(model, arrow, 1.0),
+        Action::NudgeBack => {
+            model.nudge = Default::default();
+            model.note("the picture stands where the mount says");
+        }
+        Action::Sync => return goto::sync(model),
+        Action::GiveClock => return give_clock(model),
+        Action::GiveSite => return give_site(model),
+        Action::Compare => return vec![Effect::Order(Order::Compare)],
+        Action::ReadDisplay => return vec![Effect::Order(Order::ReadDisplay)],
+        Action::MarkUnwound => {
+            model.turns.mark_unwound();
+            model.note("the cable hangs free: the turns are counted from here");
+            return vec![Effect::KeepTurns(model.turns)];
+        }
+        Action::Show(screen) => model.show(screen),
+        Action::Up => model.view.bar = model.view.bar.saturating_sub(1),
+        Action::Down => scroll(model, 1),
+        Action::PageUp => model.view.bar = model.view.bar.saturating_sub(PAGE),
+        Action::PageDown => scroll(model, PAGE),
+        Action::Dismiss => model.banner = None,
+        Action::Quit => return goto::quit(model),
+    }
+    Vec::new()
+}
+
+fn scroll(model: &mut Model, by: usize) {
+    let last = match model.view.screen {
+        Screen::Eyepieces => model.instrument.eyepieces.len().saturating_sub(1),
+        Screen::Log => model.log.lines().len().saturating_sub(1),
+        _ => KEPT,
+    };
+    model.view.bar = (model.view.bar + by).min(last);
+}
+
+fn use_eyepiece(model: &mut Model, index: usize) -> Vec<Effect> {
+    let count = model.instrument.eyepieces.len().max(1);
+    model.instrument.use_eyepiece(index % count);
+    let eyepiece = model.instrument.eyepiece();
+    let text = format!("{:.0} mm eyepiece, {:.0}×", eyepiece.focal_length_mm, model.instrument.magnification());
+    model.note(text);
+    vec![Effect::KeepEyepiece(index % count)]
+}
+
+/// Takes the next deep-sky object in the field as the target; the list is nearest first.
+fn next_object(model: &mut Model) {
+    let names: Vec<&str> = model.field.iter().map(|listed| listed.name.as_str()).collect();
+    let current = model.target.as_ref().and_then(|target| names.iter().position(|name| *name == target.name));
+    let next = current.map_or(0, |place| place + 1);
+    let Some(name) = names.get(next).or(names.first()) else {
+        model.say(Weight::Note, "nothing in this field has a name", "press / and type one");
+        return;
+    };
+    match Catalogue::embedded().search(name) {
+        Ok(object) => model.target = Some(object),
+        Err(error) => model.say(Weight::Note, &error.to_string(), ""),
+    }
+}
+
+/// Pushes the picture along the canvas: the field's centre moves the other way, and stays on the sky from then on.
+fn nudge(model: &mut Model, arrow: Arrow, by_px: f64) {
+    let (Some(here), Some(moment)) = (model.here, model.moment()) else {
+        model.say(Weight::Note, "there is no picture to push yet", "");
+        return;
+    };
+    let (right, down) = match arrow {
+        Arrow::Left => (-by_px, 0.0),
+        Arrow::Right => (by_px, 0.0),
+        Arrow::Up => (0.0, -by_px),
+        Arrow::Down => (0.0, by_px),
+    };
+    let field = FieldOfView::new(&here.pointing, &model.instrument, &moment, model.site().as_ref());
+    let pushed = model.nudge.plus(field.nudge(right, down));
+    if pushed.east.to_degrees().hypot(pushed.north.to_degrees()) > FARTHEST_DEG {
+        model.say(Weight::Note, "the picture is pushed as far as it goes", "sync the mount on a star instead (S)");
+        return;
+    }
+    model.nudge = pushed;
+}
+
+fn give_clock(model: &mut Model) -> Vec<Effect> {
+    let Some(ours) = model.time.ours else { return Vec::new() };
+    let offset = model.belief.clock.value().map_or(0.0, |clock| clock.offset_hours);
+    model.note("giving the mount our date and time");
+    vec![Effect::Order(Order::SetClock(ours, offset)), Effect::Order(Order::Compare)]
+}
+
+fn give_site(model: &mut Model) -> Vec<Effect> {
+    let Some(site) = model.opening.site else {
+        model.say(
+            Weight::Note,
+            "we have no site to give",
+            "start with --site LAT,LON,ELEV, or write it in the settings",
+        );
+        return Vec::new();
+    };
+    model.note("giving the mount our site");
+    vec![Effect::Order(Order::SetSite(site)), Effect::Order(Order::Compare)]
+}
+
+impl Model {
+    /// Shows a screen from its top.
+    pub(crate) fn show(&mut self, screen: Screen) {
+        self.view.screen = screen;
+        self.view.bar = if screen == Screen::Eyepieces { self.instrument.eyepiece_index() } else { 0 };
+    }
+
+    /// Something that is told in the log.
+    pub(crate) fn note(&mut self, text: impl Into<String>) {
+        let utc = self.utc();
+        self.log.add(utc, Weight::Note, text);
+    }
+
+    /// Something that is told at the top and in the log. An alarm is not covered by anything lighter.
+    pub(crate) fn say(&mut self, weight: Weight, text: &str, advice: &str) {
+        use crate::app::banner::Banner;
+        let banner = Banner::new(weight, text, advice);
+        let utc = self.utc();
+        self.log.add(utc, weight, banner.sentence());
+        let covered = self.banner.as_ref().is_some_and(|old| old.weight == Weight::Alarm && weight != Weight::Alarm);
+        if !covered {
+            self.banner = Some(banner);
+        }
+    }
+}

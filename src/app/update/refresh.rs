@@ -1,0 +1,90 @@
+//! Where the telescope points, and whether the picture is drawn anew. Dark while the mount slews or its position is stale.
+
+use crate::app::effect::Effect;
+use crate::app::facts;
+use crate::app::model::{Here, Model, Projector};
+use crate::app::scene::Scene;
+use crate::overlay::style::Mode;
+use crate::sky::catalogue::Catalogue;
+use crate::sky::horizon::Horizon;
+use crate::sky::pointing::Motion;
+use crate::sky::time::Moment;
+use crate::units::{Angle, Magnitude};
+
+/// A picture that was pushed onto its object is right to so much: the mount's right ascension comes in steps of 15 arcseconds.
+const AFTER_NUDGE: Angle = Angle::arcseconds(15.0);
+
+/// Stars fainter than this are not listed.
+const FAINTEST: Magnitude = Magnitude(11.0);
+
+/// Looks where the telescope points now and asks for a new picture when the eye could tell it from the one that is shown.
+pub(super) fn refreshed(model: &mut Model) -> Vec<Effect> {
+    let moment = model.moment();
+    let pointing = model.belief.pointing(model.time.now).map(|mut pointing| {
+        pointing.position = model.nudge.applied(&pointing.position);
+        if model.nudged() {
+            pointing.uncertainty = pointing.uncertainty.min(AFTER_NUDGE);
+        }
+        pointing
+    });
+    let horizon = moment.zip(model.site()).map(|(moment, site)| Horizon::at(&moment, &site));
+    model.here = pointing.map(|pointing| Here {
+        pointing,
+        horizontal: horizon.as_ref().map(|horizon| horizon.airless(&pointing.position)),
+    });
+    match scene(model, moment, horizon.as_ref()) {
+        Err(why) => darkened(model, why),
+        Ok(scene) => {
+            if model.drawn.as_ref().is_some_and(|drawn| !scene.differs(drawn)) {
+                return Vec::new();
+            }
+            model.field = listed(&scene);
+            model.projector = Projector::Drawing;
+            model.drawn = Some(scene.clone());
+            vec![Effect::Draw(Box::new(scene))]
+        }
+    }
+}
+
+/// What is to be drawn, or why nothing is.
+fn scene(model: &Model, moment: Option<Moment>, horizon: Option<&Horizon>) -> Result<Scene, &'static str> {
+    let here = model.here.ok_or("no position yet")?;
+    if here.pointing.stale {
+        return Err("the position is too old");
+    }
+    if here.pointing.motion == Motion::Slewing || model.belief.slewing_by_order() {
+        return Err("the telescope moves");
+    }
+    if model.overlay.mode == Mode::Off {
+        return Err("switched off");
+    }
+    let moment = moment.ok_or("date and time are unknown")?;
+    Ok(Scene {
+        pointing: here.pointing,
+        instrument: model.instrument.clone(),
+        moment,
+        site: model.site(),
+        rotation: horizon.map_or(Angle::ZERO, |horizon| horizon.parallactic_angle(&here.pointing.position)),
+        mode: model.overlay.mode,
+        brightness: f32::from(model.overlay.brightness) / 10.0,
+        target: model.target_in_picture(),
+    })
+}
+
+fn darkened(model: &mut Model, why: &'static str) -> Vec<Effect> {
+    if model.projector == Projector::Dark(why) {
+        return Vec::new();
+    }
+    let lit = !matches!(model.projector, Projector::Dark(_));
+    model.projector = Projector::Dark(why);
+    model.drawn = None;
+    model.picture = None;
+    if lit { vec![Effect::Dark] } else { Vec::new() }
+}
+
+fn listed(scene: &Scene) -> Vec<facts::Listed> {
+    let catalogue = Catalogue::embedded();
+    let centre = crate::sky::astrometry::j2000(&scene.pointing.position, &scene.moment);
+    let found = catalogue.within(&centre, scene.instrument.true_field() / 2.0, FAINTEST);
+    facts::listed(&found, catalogue)
+}

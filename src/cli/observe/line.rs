@@ -1,0 +1,80 @@
+//! The line to the mount: a thread of its own that waits for bytes, or, under a virtual clock, stepped by the session.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use super::clock::Clock;
+use crate::hw::mount::driver::Ours;
+use crate::hw::mount::link::{Pump, Update};
+use crate::hw::mount::order::Order;
+
+/// The thread looks for bytes at least so often.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// What the session says to the mount.
+pub(super) enum Word {
+    /// An order.
+    Order(Order),
+    /// Forget all that is believed.
+    Forget(Ours),
+}
+
+/// The line to the mount.
+pub(super) enum Line {
+    /// A thread turns the pump.
+    Thread(Sender<Word>),
+    /// The session turns it.
+    Stepped(Box<Pump>),
+}
+
+impl Line {
+    /// Turns the pump in a thread of its own; `told` is called with every update.
+    ///
+    /// # Errors
+    /// The system has no more threads.
+    pub(super) fn threaded(
+        pump: Pump,
+        clock: Clock,
+        told: impl FnMut(Update) -> bool + Send + 'static,
+    ) -> std::io::Result<Line> {
+        let (words, heard) = channel();
+        thread::Builder::new().name("mount".into()).spawn(move || turn(pump, clock, &heard, told))?;
+        Ok(Line::Thread(words))
+    }
+
+    /// Gives an order.
+    pub(super) fn order(&mut self, order: Order, now: Duration) {
+        match self {
+            // A thread that has ended has told so: the session is ending.
+            Line::Thread(words) => drop(words.send(Word::Order(order))),
+            Line::Stepped(pump) => pump.order(order, now),
+        }
+    }
+
+    /// Forgets all that is believed and asks anew.
+    pub(super) fn forget(&mut self, ours: Ours, now: Duration) {
+        match self {
+            Line::Thread(words) => drop(words.send(Word::Forget(ours))),
+            Line::Stepped(pump) => pump.forget(ours, now),
+        }
+    }
+}
+
+fn turn(mut pump: Pump, clock: Clock, heard: &Receiver<Word>, mut told: impl FnMut(Update) -> bool) {
+    loop {
+        let now = clock.now();
+        if let Some(update) = pump.step(now)
+            && !told(update)
+        {
+            return;
+        }
+        let wait = pump.wake_at().saturating_sub(clock.now()).clamp(Duration::from_millis(1), LOOK);
+        match heard.recv_timeout(wait) {
+            Ok(Word::Order(order)) => pump.order(order, clock.now()),
+            Ok(Word::Forget(ours)) => pump.forget(ours, clock.now()),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! The one event loop: keys, the mount, signals and time go in; orders, pictures and the screen come out.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use super::clock::Clock;
+use super::line::Line;
+use super::opening::Opened;
+use super::projection::Projection;
+use super::signals;
+use super::summary::Summary;
+use crate::app::key::Key;
+use crate::app::scene::Scene;
+use crate::app::{Effect, Event, Model, update};
+use crate::cli::{Failure, answer_json};
+use crate::hw::mount::belief::LinkState;
+use crate::hw::mount::driver::Ours;
+use crate::hw::mount::link::Update;
+use crate::picture::Picture;
+use crate::sky::pointing::Motion;
+use crate::tui::terminal::Taken;
+use crate::tui::theme::Depth;
+use crate::tui::{self, keys};
+
+/// Time passes in such steps while nothing happens and the field stands.
+const QUIET: Duration = Duration::from_millis(250);
+
+/// ... and in such while the field moves.
+const MOVING: Duration = Duration::from_millis(50);
+
+/// The screen is drawn at least so often, for the ages on it.
+const REDRAW: Duration = Duration::from_millis(500);
+
+/// A step of virtual time.
+const STEP: Duration = Duration::from_millis(10);
+
+/// At the end the mount gets so long to be seen standing still.
+const LAST_STOP: Duration = Duration::from_millis(1500);
+
+/// What wakes the loop.
+enum Wake {
+    Input(keys::Input),
+    Mount(Box<Update>),
+    AskedToEnd,
+    TerminalGone,
+}
+
+/// The session at work.
+struct Session {
+    model: Model,
+    clock: Clock,
+    ours: Ours,
+    line: Line,
+    projection: Projection,
+    screen: Option<(Taken, Depth)>,
+    inbox: Receiver<Wake>,
+    ended: bool,
+    dirty: bool,
+    drawn_at: Option<Duration>,
+}
+
+/// Runs the session in the terminal.
+pub(super) fn in_terminal(opened: Opened) -> Result<(), Failure> {
+    let term = std::env::var("TERM").ok();
+    if term.as_deref() == Some("dumb") {
+        return Err(Failure::asked(
+            "this terminal (TERM=dumb) cannot place text: use another, or add --headless --for SECONDS",
+        ));
+    }
+    let depth = Depth::of(std::env::var("COLORTERM").ok().as_deref(), term.as_deref());
+    let (wakes, inbox) = channel();
+    let mut session = Session::new(opened, &wakes, inbox)?;
+    let taken = Taken::take(depth).map_err(|error| Failure::Failed(format!("the terminal cannot be used: {error}")))?;
+    session.screen = Some((taken, depth));
+    std::thread::Builder::new().name("keys".into()).spawn(move || listen(&wakes)).map_err(Failure::failed)?;
+    session.run(|_| false)?;
+    Ok(())
+}
+
+/// Runs the session without a terminal, for so many seconds.
+pub(super) fn without_terminal(opened: Opened, seconds: f64, targets: &[String]) -> Result<(), Failure> {
+    let (wakes, inbox) = channel();
+    let mut session = Session::new(opened, &wakes, inbox)?;
+    let end = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+    let mut targets = targets.iter();
+    let mut next_at = Duration::ZERO;
+    session.run(|session| {
+        let idle = session.model.belief.link == LinkState::Ready && session.model.here.is_some();
+        let free = idle && !session.model.belief.slewing_by_order() && session.clock.now() >= next_at;
+        if free && let Some(name) = targets.next() {
+            session.type_and_enter(name);
+            // The order is on its way, the belief is not yet back; each target is looked at for a while.
+            next_at = session.clock.now() + Duration::from_secs(10);
+        }
+        session.clock.now() >= end
+    })?;
+    answer_json(&Summary::of(&session.model, &session.projection))?;
+    if session.model.belief.counters.polls == 0 {
+        let heard = session.model.log.lines().next_back().map(|line| line.text.clone());
+        return Err(Failure::Failed(format!(
+            "the mount was never heard: {}",
+            heard.unwrap_or_else(|| "is it switched on, and the cable in?".to_owned())
+        )));
+    }
+    Ok(())
+}
+
+/// Waits for keys, in a thread of its own.
+fn listen(wakes: &Sender<Wake>) {
+    loop {
+        let wake = keys::next().map_or(Wake::TerminalGone, Wake::Input);
+        let gone = matches!(wake, Wake::TerminalGone);
+        if wakes.send(wake).is_err() || gone {
+            return;
+        }
+    }
+}
+
+impl Session {
+    fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
+        let Opened { mut opening, clock, ours, pump, projection } = opened;
+        opening.projector = projection.describe();
+        let told = wakes.clone();
+        signals::listen(move || drop(told.send(Wake::AskedToEnd))).map_err(Failure::failed)?;
+        let told = wakes.clone();
+        let line = match clock {
+            Clock::Real { .. } => {
+                Line::threaded(pump, clock, move |update| told.send(Wake::Mount(Box::new(update))).is_ok())
+            }
+            Clock::Virtual { .. } => Ok(Line::Stepped(Box::new(pump))),
+        };
+        Ok(Session {
+            model: Model::new(opening),
+            clock,
+            ours,
+            line: line.map_err(Failure::failed)?,
+            projection,
+            screen: None,
+            inbox,
+            ended: false,
+            dirty: true,
+            drawn_at: None,
+        })
+    }
+
+    /// The loop. `over` is asked after each round.
+    fn run(&mut self, mut over: impl FnMut(&mut Session) -> bool) -> Result<(), Failure> {
+        self.happened(Event::Clocks(self.clock.read()));
+        self.draw_screen()?;
+        while !self.ended {
+            self.wait();
+            self.happened(Event::Clocks(self.clock.read()));
+            if over(self) {
+                self.happened(Event::AskedToEnd);
+            }
+            self.draw_screen()?;
+            if std::env::var_os("SCOTOPIC_TEST_PANIC").is_some_and(|after| {
+                after
+                    .to_str()
+                    .and_then(|text| text.parse().ok())
+                    .is_some_and(|s: f64| self.clock.now().as_secs_f64() > s)
+            }) {
+                #[expect(clippy::panic, reason = "asked for, to show that the terminal is given back")]
+                {
+                    panic!("SCOTOPIC_TEST_PANIC asked for it");
+                }
+            }
+        }
+        self.projection.dark();
+        self.see_it_stop();
+        Ok(())
+    }
+
+    /// Waits for the next thing to happen, and takes in all that has.
+    fn wait(&mut self) {
+        if let Line::Stepped(_) = self.line {
+            self.step();
+            return;
+        }
+        let moving = !matches!(self.model.belief.motion.value(), Some(Motion::Tracking));
+        let mut wake = match self.inbox.recv_timeout(if moving { MOVING } else { QUIET }) {
+            Ok(wake) => Some(wake),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Wake::AskedToEnd),
+        };
+        while let Some(now) = wake.take() {
+            self.woken(now);
+            wake = self.inbox.try_recv().ok();
+        }
+    }
+
+    /// A quarter of a second of virtual time.
+    fn step(&mut self) {
+        while let Ok(wake) = self.inbox.try_recv() {
+            self.woken(wake);
+        }
+        for _ in 0..QUIET.as_millis() / STEP.as_millis() {
+            self.clock.advance(STEP);
+            let now = self.clock.now();
+            let Line::Stepped(pump) = &mut self.line else { return };
+            if let Some(update) = pump.step(now) {
+                self.happened(Event::Clocks(self.clock.read()));
+                self.woken(Wake::Mount(Box::new(update)));
+            }
+        }
+    }
+
+    fn woken(&mut self, wake: Wake) {
+        self.dirty = true;
+        match wake {
+            Wake::Input(keys::Input::Key(key)) => self.happened(Event::Key(key)),
+            Wake::Input(keys::Input::Resized) => {}
+            Wake::Mount(update) => {
+                self.happened(Event::Clocks(self.clock.read()));
+                self.happened(Event::Mount(Box::new(update.belief), update.reports));
+            }
+            Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
+        }
+    }
+
+    /// As if a person had searched for a name and pressed Enter.
+    fn type_and_enter(&mut self, name: &str) {
+        let keys = [Key::Char('/')].into_iter().chain(name.chars().map(Key::Char)).chain([Key::Enter]);
+        keys.for_each(|key| self.happened(Event::Key(key)));
+    }
+
+    /// An event, and what comes of it.
+    fn happened(&mut self, event: Event) {
+        let fresh = matches!(event, Event::Mount(..));
+        for effect in update(&mut self.model, event) {
+            self.carry_out(effect, fresh);
+        }
+    }
+
+    fn carry_out(&mut self, effect: Effect, fresh: bool) {
+        let now = self.clock.now();
+        match effect {
+            Effect::Order(order) => self.line.order(order, now),
+            Effect::Draw(scene) => self.draw_picture(&scene, fresh),
+            Effect::Dark => self.projection.dark(),
+            Effect::Forget => {
+                self.ours.utc_at_start = self.clock.utc_at_start();
+                self.line.forget(self.ours, now);
+            }
+            Effect::KeepTurns(_) | Effect::KeepEyepiece(_) => {}
+            Effect::Quit => self.ended = true,
+        }
+    }
+
+    fn draw_picture(&mut self, scene: &Scene, fresh: bool) {
+        self.dirty = true;
+        let picture = Arc::new(frame(scene));
+        match self.projection.present(&picture) {
+            Ok(()) => {
+                if let Some(age) = self.model.belief.position.age(self.clock.now()) {
+                    self.projection.ages.add(age);
+                    if fresh {
+                        self.projection.after_reply.add(age);
+                    }
+                }
+                self.happened(Event::Shown(picture));
+            }
+            Err(error) => self.happened(Event::ProjectorFailed(error.to_string())),
+        }
+    }
+
+    fn draw_screen(&mut self) -> Result<(), Failure> {
+        let Some((taken, depth)) = &mut self.screen else { return Ok(()) };
+        let now = self.clock.now();
+        let due = self.drawn_at.is_none_or(|at| now.saturating_sub(at) >= REDRAW);
+        if !self.dirty && !due {
+            return Ok(());
+        }
+        self.dirty = false;
+        self.drawn_at = Some(now);
+        match taken.terminal.draw(|frame| tui::draw(&self.model, *depth, frame)) {
+            Ok(_) => Ok(()),
+            Err(_gone) if self.ended => Ok(()),
+            Err(error) => Err(Failure::Failed(format!("the terminal is gone: {error}"))),
+        }
+    }
+
+    /// After the end: a stop that was ordered is seen through.
+    fn see_it_stop(&mut self) {
+        let deadline = self.clock.now() + LAST_STOP;
+        while matches!(self.line, Line::Thread(_)) && self.clock.now() < deadline {
+            let belief = &self.model.belief;
+            if !(belief.slewing_by_order() || belief.moving_by_order || belief.stopping) {
+                return;
+            }
+            if let Ok(Wake::Mount(update)) = self.inbox.recv_timeout(MOVING) {
+                self.model.belief = update.belief;
+            }
+        }
+    }
+}
+
+fn frame(scene: &Scene) -> Picture {
+    Picture::black(scene.instrument.projector.width_px as usize, scene.instrument.projector.height_px as usize)
+}

@@ -1,0 +1,87 @@
+//! What a session without a terminal ends with: one line of JSON.
+
+use serde::Serialize;
+
+use super::projection::{Ages, Projection};
+use crate::app::Model;
+
+/// Percentiles in milliseconds; null when there was nothing to measure.
+#[derive(Debug, Clone, Serialize)]
+struct Percentiles {
+    p50: Option<f64>,
+    p95: Option<f64>,
+    p99: Option<f64>,
+}
+
+impl Percentiles {
+    fn of(ages: &Ages) -> Percentiles {
+        Percentiles { p50: ages.percentile_ms(0.5), p95: ages.percentile_ms(0.95), p99: ages.percentile_ms(0.99) }
+    }
+}
+
+/// The session in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Summary {
+    /// Pictures handed to the projector.
+    frames: u64,
+    /// Age of the mount's reply when the picture drawn from it was handed over, all pictures.
+    overlay_age_ms: Percentiles,
+    /// The same, only pictures that a new reply caused.
+    reply_to_picture_ms: Percentiles,
+    /// Positions read.
+    polls: u64,
+    /// Commands sent again.
+    retries: u64,
+    /// Conversations lost and found again.
+    resyncs: u64,
+    /// Ports opened again.
+    reconnects: u64,
+    /// Go-tos that the mount took.
+    slews: u64,
+    /// Go-tos refused, by the safety rules or the mount.
+    refused: u64,
+    /// Faults reported.
+    faults: u64,
+    /// Suspends and standstills.
+    gaps: u64,
+    /// Whether the telescope was simulated.
+    simulated: bool,
+    /// Where the telescope pointed at the end: degrees of date, nudge included.
+    ra_deg: Option<f64>,
+    /// See `ra_deg`.
+    dec_deg: Option<f64>,
+    /// Most memory held, in mebibytes.
+    peak_memory_mib: Option<f64>,
+}
+
+impl Summary {
+    pub(super) fn of(model: &Model, projection: &Projection) -> Summary {
+        let counters = &model.belief.counters;
+        let place = model.here.map(|here| here.pointing.position);
+        Summary {
+            frames: projection.frames,
+            overlay_age_ms: Percentiles::of(&projection.ages),
+            reply_to_picture_ms: Percentiles::of(&projection.after_reply),
+            polls: counters.polls,
+            retries: counters.retries,
+            resyncs: counters.resyncs,
+            reconnects: counters.reconnects,
+            slews: counters.slews,
+            refused: counters.refused + model.counts.refused,
+            faults: counters.faults,
+            gaps: model.counts.gaps,
+            simulated: model.opening.simulated,
+            ra_deg: place.map(|place| place.ra().to_degrees()),
+            dec_deg: place.map(|place| place.dec().to_degrees()),
+            peak_memory_mib: peak_memory_mib(),
+        }
+    }
+}
+
+/// `VmHWM` of `/proc/self/status`.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some((kib / 102.4).round() / 10.0)
+}
