@@ -14,6 +14,8 @@ pub mod failure;
 pub mod observe;
 /// Devices that are not there.
 pub mod simulate;
+/// The process that stops the mount if the session dies.
+pub mod supervise;
 
 pub use failure::Failure;
 
@@ -46,6 +48,9 @@ enum Command {
     /// Play a device that is not there, on a port that other programs open
     #[command(subcommand)]
     Simulate(simulate::Device),
+    /// Watch over a session; started by the session itself
+    #[command(hide = true)]
+    Supervise,
     /// Print the completions of a shell
     Completions {
         /// The shell to complete in
@@ -78,6 +83,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         None => observe::run(&observe::Arguments::default()),
         Some(Command::Observe(arguments)) => observe::run(&arguments),
         Some(Command::Simulate(device)) => simulate::run(&device),
+        Some(Command::Supervise) => supervise::run(),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);

@@ -9,3 +9,5 @@ pub mod mount;
 pub mod port;
 /// The projector: framebuffer, files, memory, window.
 pub mod projector;
+/// A second process that stops the mount if this one dies during a slew.
+pub mod supervisor;
