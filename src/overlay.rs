@@ -5,9 +5,27 @@
 
 /// Shapes and text laid over the picture.
 pub mod canvas;
+/// Colours of stars, and the red palette.
+pub mod colour;
+/// What is in the field, as one picture.
+pub mod compose;
+/// The words: information block and eyepiece's line.
+pub mod information;
+/// Names without overlap.
+pub mod labels;
+/// Where things go on the canvas.
+pub mod layout;
+/// Outlines, reticle, north and east.
+pub mod marks;
+/// The observer's photographs.
+pub mod photograph;
+/// Stars as soft points.
+pub mod stars;
 /// How the overlay looks: mode, palette, brightness, sizes.
 pub mod style;
 /// Text as coverage.
 pub mod text;
 
+pub use compose::{Composer, Scene, compose};
+pub use photograph::Photograph;
 pub use style::{Eye, Mode, Palette, Style};

@@ -4,6 +4,8 @@ use std::fmt;
 
 /// Making a picture fit another size, and mirroring it.
 mod fit;
+/// A small bounded reader of FITS images.
+pub mod fits;
 /// Pictures as PNG files in memory.
 pub mod png;
 /// Between linear light and 8-bit codes.

@@ -1,0 +1,409 @@
+//! What is in the field, as one picture.
+
+use super::canvas::{Area, Disc, Ink, Region, circle, lay_text, line};
+use super::labels::{self, Wanted};
+use super::layout::{self, Beside, Line};
+use super::marks::{self, Outline};
+use super::photograph::Photograph;
+use super::style::{Eye, Mode, Style};
+use super::text::{Scribe, Weight};
+use super::{colour, information, stars};
+use crate::picture::Picture;
+use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
+use crate::sky::field::FieldOfView;
+use crate::sky::project::Projection;
+
+/// The only colour of text and marks: the red primary.
+const RED: [f32; 3] = [1.0, 0.0, 0.0];
+/// Most names that are tried.
+const MOST_NAMES: usize = 80;
+/// Unnamed stars that get their magnitude written, the brightest first.
+const MAGNITUDES: usize = 12;
+
+/// What there is to draw.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// Stars and objects in the field.
+    pub found: &'a Found,
+    /// What the observer looks at; when nothing is given, what stands out most near the middle.
+    pub target: Option<&'a Object>,
+    /// The observer's photographs.
+    pub photographs: &'a [Photograph],
+    /// Where names come from.
+    pub catalogue: &'a Catalogue,
+}
+
+/// Composes pictures, and keeps between them what did not change: written words, and photographs laid on the canvas.
+#[derive(Default)]
+pub struct Composer {
+    scribe: Scribe,
+    ink: Option<Ink>,
+    photographs: Option<Laid>,
+}
+
+/// Photographs laid on a canvas, and for which view.
+struct Laid {
+    view: (Projection, Region, Style, Vec<String>),
+    picture: Picture,
+    any: bool,
+}
+
+/// The view in which the sky is drawn: over the object, or beside it.
+struct View {
+    projection: Projection,
+    region: Region,
+    beside: Option<Beside>,
+}
+
+/// The picture of a scene. To compose many, keep a [`Composer`].
+#[must_use]
+pub fn compose(scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> Picture {
+    Composer::default().compose(scene, field, eye, style)
+}
+
+impl Composer {
+    /// The picture of a scene: exactly black while the mount slews, when the position is stale, and in mode off.
+    #[must_use]
+    pub fn compose(&mut self, scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> Picture {
+        let (width, height) = (field.width_px, field.height_px);
+        if !field.may_draw || style.mode == Mode::Off {
+            return Picture::black(width, height);
+        }
+        let size = (width, height);
+        let Some(mut ink) = self.ink.take().filter(|ink| ink.size() == size).or_else(|| Ink::new(width, height)) else {
+            return Picture::black(width, height);
+        };
+
+        let target = scene.target.cloned().or_else(|| standing_out(scene, field));
+        let visible = Region::new(width, height, vec![eyepiece_disc(field)]);
+        let view = view(field, style, target.as_ref(), &visible);
+
+        // The sky: photographs, stars, outlines.
+        let (mut picture, photographed) = self.photographs(scene.photographs, field, style, &view);
+        draw_stars(&mut picture, scene, field, style, &view, photographed);
+        let outlines = outlines(scene, &view);
+        self.draw_marks(&mut picture, &mut ink, &outlines, target.as_ref(), field, style, &view, &visible);
+
+        // The words, each keeping the place of those before it.
+        let mut taken = Vec::new();
+        if style.information {
+            taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, &visible));
+            taken.extend(self.compass(&mut picture, &mut ink, field, style, &view, &visible));
+        }
+        if style.labels {
+            self.names(&mut picture, &mut ink, scene, field, style, &view, &outlines, target.as_ref(), taken);
+        }
+
+        for light in picture.pixels_mut().iter_mut().flatten() {
+            *light = (*light * style.gain).clamp(0.0, style.ceiling);
+        }
+        self.ink = Some(ink);
+        picture
+    }
+
+    /// A picture with the photographs on it (from last time, if nothing changed), and whether there are any.
+    fn photographs(&mut self, all: &[Photograph], field: &FieldOfView, style: &Style, view: &View) -> (Picture, bool) {
+        if all.is_empty() {
+            return (Picture::black(field.width_px, field.height_px), false);
+        }
+        let names = all.iter().map(|photograph| photograph.name.clone()).collect();
+        let wanted = (view.projection, view.region.clone(), style.clone(), names);
+        if let Some(laid) = self.photographs.as_ref().filter(|laid| laid.view == wanted) {
+            return (laid.picture.clone(), laid.any);
+        }
+        let mut picture = Picture::black(field.width_px, field.height_px);
+        let light =
+            |light: [f32; 3]| colour::in_palette(style.palette, light).map(|channel| channel * style.photograph);
+        let mut any = false;
+        for photograph in all {
+            any |= photograph.draw(&mut picture, &view.region, &view.projection, light);
+        }
+        self.photographs = Some(Laid { view: wanted, picture: picture.clone(), any });
+        (picture, any)
+    }
+
+    /// Outlines, the target's marks, the circles of uncertainty, eyepiece and window.
+    #[expect(clippy::too_many_arguments, reason = "what is drawn, on what, and how: each is used once")]
+    fn draw_marks(
+        &mut self,
+        picture: &mut Picture,
+        ink: &mut Ink,
+        outlines: &[(FieldObject, Outline)],
+        target: Option<&Object>,
+        field: &FieldOfView,
+        style: &Style,
+        view: &View,
+        visible: &Region,
+    ) {
+        let dim = RED.map(|channel| channel * style.marks);
+        let bright = RED.map(|channel| channel * style.text);
+        let is_target = |object: &FieldObject| target.is_some_and(|target| target.name == object.name);
+
+        for (_, outline) in outlines.iter().filter(|(object, _)| !is_target(object)) {
+            outline.draw(ink, 1.3);
+        }
+        ink.lay(picture, &view.region, dim);
+
+        let middle = target.and_then(|target| view.projection.pixel(&target.astrometry.position));
+        let own = outlines.iter().find(|(object, _)| is_target(object)).map(|(_, outline)| outline);
+        if let (Some((x, y)), Some(outline)) = (middle, own) {
+            outline.draw(ink, 1.8);
+            if outline.minor_radius() > field.height_px as f64 / 2.0 {
+                outline.draw_axis(ink, 40.0, (field.width_px + field.height_px) as f64);
+            }
+            if outline.minor_radius() < 14.0 {
+                marks::reticle(ink, x, y, outline.radius() + 8.0);
+            } else {
+                marks::reticle(ink, x, y, 14.0);
+            }
+        } else if let Some((x, y)) = middle {
+            marks::reticle(ink, x, y, 14.0);
+        }
+        ink.lay(picture, &view.region, bright);
+
+        if style.uncertainty && view.beside.is_none() && field.uncertainty.to_radians() > 0.0 {
+            let radius = field.projection.pixels(field.uncertainty);
+            let disc = Disc { x: field.width_px as f64 / 2.0, y: field.height_px as f64 / 2.0, radius };
+            marks::broken_circle(ink, disc, 1.0, (2.0, 7.0));
+        }
+        let rims = [style.field_circle.then(|| eyepiece_disc(field)), view.beside.map(|beside| beside.window)];
+        for disc in rims.into_iter().flatten() {
+            if let Some(path) = circle(Disc { radius: disc.radius - 1.0, ..disc }) {
+                ink.stroke(&path, 1.2, None);
+            }
+        }
+        ink.lay(picture, visible, dim);
+    }
+
+    /// The block on top and the line at the bottom; their boxes.
+    fn information(
+        &mut self,
+        picture: &mut Picture,
+        target: Option<&Object>,
+        field: &FieldOfView,
+        eye: &Eye,
+        style: &Style,
+        visible: &Region,
+    ) -> Vec<Area> {
+        let em_px = layout::text_px(field, style);
+        let words = target.map_or_else(|| information::about_nothing(field), |target| information::about(target, eye));
+        let mut lines: Vec<Line> = layout::block(&mut self.scribe, &words, em_px, field, visible);
+        let below = information::eyepiece(field, eye);
+        lines.extend(layout::bottom_line(&mut self.scribe, &below, em_px, field, visible));
+        let red = RED.map(|channel| channel * style.text);
+        for line in &lines {
+            lay_text(picture, &line.text, line.left, line.top, red);
+        }
+        lines.iter().map(Line::area).collect()
+    }
+
+    /// North and east at the lower left, a bar of the sky's scale at the lower right; their boxes.
+    fn compass(
+        &mut self,
+        picture: &mut Picture,
+        ink: &mut Ink,
+        field: &FieldOfView,
+        style: &Style,
+        view: &View,
+        visible: &Region,
+    ) -> Vec<Area> {
+        let em_px = (layout::text_px(field, style) * 0.85).max(13.0);
+        let (middle_x, middle_y) = (field.width_px as f64 / 2.0, field.height_px as f64 / 2.0);
+        let length = 30.0;
+        // From the lower corner towards the middle, until it can be seen.
+        let seen = |side: f64| {
+            (0..100).map(|step| 1.0 - f64::from(step) / 100.0).find_map(|part| {
+                let (x, y) = (middle_x + side * (middle_x - 62.0) * part, middle_y + (middle_y - 90.0) * part);
+                visible.contains_box(&Area::about(x, y, 52.0, 52.0)).then_some((x, y))
+            })
+        };
+        let (Some(left), Some(right)) = (seen(-1.0), seen(1.0)) else { return Vec::new() };
+
+        let letters = marks::compass(ink, &view.projection, left.0, left.1, length);
+        let (bar_left, words) = marks::scale_bar(ink, &view.projection, right.0 + 45.0, right.1 + 40.0, 130.0);
+        let red = RED.map(|channel| channel * style.text * 0.75);
+        ink.lay(picture, visible, red);
+        for (letter, (x, y)) in ["N", "E"].into_iter().zip(letters) {
+            let text = self.scribe.write(letter, Weight::Bold, em_px);
+            let top = y - text.height as f64 / 2.0;
+            let line = Line::centred(text, x, top);
+            lay_text(picture, &line.text, line.left, line.top, red);
+        }
+        let text = self.scribe.write(&words, Weight::Bold, em_px);
+        let bar_middle = (bar_left + right.0 + 45.0) / 2.0;
+        let top = right.1 + 36.0 - text.height as f64;
+        let line = Line::centred(text, bar_middle, top);
+        lay_text(picture, &line.text, line.left, line.top, red);
+        let bar = Area { left: bar_left - 6.0, top: line.area().top, right: right.0 + 51.0, bottom: right.1 + 48.0 };
+        vec![Area::about(left.0, left.1, length + 22.0, length + 22.0), bar]
+    }
+
+    /// Names of objects and stars, the most important first.
+    #[expect(clippy::too_many_arguments, reason = "what is named, on what, and how: each is used once")]
+    fn names(
+        &mut self,
+        picture: &mut Picture,
+        ink: &mut Ink,
+        scene: &Scene,
+        field: &FieldOfView,
+        style: &Style,
+        view: &View,
+        outlines: &[(FieldObject, Outline)],
+        target: Option<&Object>,
+        mut taken: Vec<Area>,
+    ) {
+        let em_px = (layout::text_px(field, style) * 0.85).max(13.0);
+        let named = names(scene, field, view, outlines, target);
+        // Nothing may be written over the target's middle.
+        if let Some((x, y)) = target.and_then(|target| view.projection.pixel(&target.astrometry.position)) {
+            taken.push(Area::about(x, y, 28.0, 28.0));
+        }
+
+        let written: Vec<_> = named.iter().map(|name| self.scribe.write(&name.text, Weight::Bold, em_px)).collect();
+        let wanted: Vec<Wanted> = named
+            .iter()
+            .zip(&written)
+            .map(|(name, text)| Wanted {
+                x: name.x,
+                y: name.y,
+                radius: name.radius,
+                width: text.width as f64 - 2.0,
+                height: text.height as f64 - 6.0,
+            })
+            .collect();
+        let placed = labels::place(&wanted, &view.region, &mut taken);
+        for leader in placed.iter().filter_map(|name| name.leader) {
+            if let Some(path) = line(leader.0, leader.1) {
+                ink.stroke(&path, 1.0, None);
+            }
+        }
+        ink.lay(picture, &view.region, RED.map(|channel| channel * style.marks));
+        for name in placed {
+            let (left, top) = (name.area.left.round() as i64 - 1, name.area.top.round() as i64 - 3);
+            let light = if named[name.index].faint { style.marks } else { (style.text + style.marks) / 2.0 };
+            lay_text(picture, &written[name.index], left, top, RED.map(|channel| channel * light));
+        }
+    }
+}
+
+/// A name and what it belongs to.
+struct Named {
+    text: String,
+    x: f64,
+    y: f64,
+    radius: f64,
+    /// Smaller is more important.
+    rank: f64,
+    /// Whether it is a magnitude only.
+    faint: bool,
+}
+
+/// What is to be named, the most important first: the target, then by brightness.
+fn names(
+    scene: &Scene,
+    field: &FieldOfView,
+    view: &View,
+    outlines: &[(FieldObject, Outline)],
+    target: Option<&Object>,
+) -> Vec<Named> {
+    let mut named: Vec<Named> = Vec::new();
+    for (object, outline) in outlines {
+        let is_target = target.is_some_and(|target| target.name == object.name);
+        // An outline that leaves the view is named at its middle.
+        let radius = if outline.radius() < 150.0 { outline.radius() } else { 16.0 };
+        let magnitude = object.magnitude.map_or(16.0, |magnitude| magnitude.0);
+        let rank = if is_target { f64::MIN } else { magnitude - 6.0 };
+        named.push(Named { text: object.name.into(), x: outline.x, y: outline.y, radius, rank, faint: false });
+    }
+    let mut unnamed = 0;
+    let mut by_light: Vec<&FieldStar> = scene.found.stars.iter().collect();
+    by_light.sort_by(|a, b| a.v_mag.total_cmp(&b.v_mag));
+    for star in by_light.into_iter().take(4 * MOST_NAMES) {
+        let Some((x, y)) = view.projection.pixel(&stars::place(star, field.years)) else { continue };
+        if !view.region.contains(x, y) {
+            continue;
+        }
+        let radius = f64::from(stars::sigma_px(star.v_mag) * 1.6);
+        let v_mag = f64::from(star.v_mag);
+        match scene.catalogue.star_name(star.id) {
+            Some(text) => named.push(Named { text, x, y, radius, rank: v_mag - 3.0, faint: false }),
+            None if unnamed < MAGNITUDES => {
+                unnamed += 1;
+                named.push(Named { text: format!("{v_mag:.1}"), x, y, radius, rank: v_mag + 8.0, faint: true });
+            }
+            None => {}
+        }
+    }
+    named.retain(|name| view.region.contains(name.x, name.y));
+    named.sort_by(|a, b| a.rank.total_cmp(&b.rank));
+    named.truncate(MOST_NAMES);
+    named
+}
+
+/// The eyepiece's circle on the canvas.
+fn eyepiece_disc(field: &FieldOfView) -> Disc {
+    Disc { x: field.width_px as f64 / 2.0, y: field.height_px as f64 / 2.0, radius: field.circle_px() }
+}
+
+/// Over the object, or beside it.
+fn view(field: &FieldOfView, style: &Style, target: Option<&Object>, visible: &Region) -> View {
+    let over = View { projection: field.projection, region: visible.clone(), beside: None };
+    if style.mode != Mode::Beside {
+        return over;
+    }
+    let middle = (field.width_px as f64 / 2.0, field.height_px as f64 / 2.0);
+    let (x, y) = target
+        .and_then(|target| field.projection.pixel(&target.astrometry.position))
+        .filter(|(x, y)| visible.contains(*x, *y))
+        .unwrap_or(middle);
+    let radius = target
+        .and_then(|target| target.axes_arcmin)
+        .map_or(0.0, |(major, _)| field.projection.pixels(crate::units::Angle::arcminutes(major)) / 2.0);
+    let beside = layout::beside(field, x, y, radius);
+    let region = Region::new(field.width_px, field.height_px, vec![eyepiece_disc(field), beside.window]);
+    View { projection: beside.projection, region, beside: Some(beside) }
+}
+
+/// Outlines of all objects, points left out.
+fn outlines(scene: &Scene, view: &View) -> Vec<(FieldObject, Outline)> {
+    let all = scene.found.objects.iter().chain(&scene.found.reaching_in);
+    all.filter(|object| !information::is_point(object.kind))
+        .filter_map(|object| Some((*object, Outline::of(object, &view.projection)?)))
+        .collect()
+}
+
+/// Draws the stars; where a photograph already shows them they are left out.
+fn draw_stars(
+    picture: &mut Picture,
+    scene: &Scene,
+    field: &FieldOfView,
+    style: &Style,
+    view: &View,
+    photographed: bool,
+) {
+    for star in &scene.found.stars {
+        let Some((x, y)) = view.projection.pixel(&stars::place(star, field.years)) else { continue };
+        if !view.region.contains(x, y) {
+            continue;
+        }
+        let shown = photographed && picture.row(y as usize)[x as usize].iter().sum::<f32>() > 0.02;
+        if !shown {
+            stars::draw(picture, &view.region, x, y, star, style.palette);
+        }
+    }
+}
+
+/// What stands out most near the middle: the brightest deep-sky object, else the brightest star that has a name.
+fn standing_out(scene: &Scene, field: &FieldOfView) -> Option<Object> {
+    let near = field.radius() * 0.6;
+    let objects = scene.found.objects.iter().filter(|object| object.separation <= near);
+    let brightness = |object: &&FieldObject| object.magnitude.map_or(99.0, |magnitude| magnitude.0);
+    let object = objects.min_by(|a, b| brightness(a).total_cmp(&brightness(b)));
+    if let Some(object) = object.and_then(|object| scene.catalogue.object(object.index)) {
+        return Some(object);
+    }
+    let stars = scene.found.stars.iter().filter(|star| star.separation <= near);
+    let named = stars.filter(|star| scene.catalogue.star_name(star.id).is_some());
+    let brightest = named.min_by(|a, b| a.v_mag.total_cmp(&b.v_mag))?;
+    scene.catalogue.star(brightest.id)
+}

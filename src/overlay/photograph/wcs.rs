@@ -1,0 +1,66 @@
+//! The astrometric cards of a FITS header: Calabretta and Greisen (2002), A&A 395, 1077, gnomonic only.
+
+use glam::{DMat2, DVec2};
+
+use super::Plate;
+use super::read::PhotographError;
+use crate::picture::fits::Fits;
+use crate::sky::coords::Equatorial;
+use crate::units::Angle;
+
+/// Where a FITS image is on the sky, from CD, or PC and CDELT, or CDELT and CROTA2.
+///
+/// SIP distortion (`RA---TAN-SIP`) is left out: a fraction of a pixel of a good telescope. Frames other than ICRS and FK5
+/// J2000 are refused. Checked against astropy's WCS: `fixtures/reference/wcs_tan.csv`.
+pub(super) fn plate(fits: &Fits) -> Result<Plate, PhotographError> {
+    let number = |key: &'static str| fits.number(key).ok_or(PhotographError::NoWcs(key));
+    for (key, wanted) in [("CTYPE1", "RA---TAN"), ("CTYPE2", "DEC--TAN")] {
+        let there = fits.text(key).ok_or(PhotographError::NoWcs(key))?;
+        if there.trim_end_matches("-SIP") != wanted {
+            return Err(PhotographError::Projection { key, there: there.into(), wanted });
+        }
+    }
+    let pole = fits.number("LONPOLE").unwrap_or(180.0);
+    if pole != 180.0 {
+        return Err(PhotographError::Projection { key: "LONPOLE", there: pole.to_string(), wanted: "180" });
+    }
+    if let Some(frame) = fits.text("RADESYS").filter(|frame| !matches!(*frame, "ICRS" | "FK5")) {
+        return Err(PhotographError::Projection { key: "RADESYS", there: frame.into(), wanted: "ICRS" });
+    }
+    for key in ["CUNIT1", "CUNIT2"] {
+        if let Some(unit) = fits.text(key).filter(|unit| !unit.starts_with("deg")) {
+            return Err(PhotographError::Projection { key, there: unit.into(), wanted: "deg" });
+        }
+    }
+
+    let matrix_deg = matrix_deg(fits)?;
+    let matrix = matrix_deg * 1f64.to_radians();
+    let area_arcsec2 = matrix_deg.determinant().abs() * 3600f64.powi(2);
+    if !(1e-6..1e8).contains(&area_arcsec2) {
+        return Err(PhotographError::Scale(area_arcsec2.sqrt()));
+    }
+    Ok(Plate {
+        centre: Equatorial::new(Angle::degrees(number("CRVAL1")?), Angle::degrees(number("CRVAL2")?)),
+        reference: DVec2::new(number("CRPIX1")?, number("CRPIX2")?) - 0.5,
+        matrix,
+    })
+}
+
+/// Degrees east and north per pixel right and up.
+fn matrix_deg(fits: &Fits) -> Result<DMat2, PhotographError> {
+    let get = |key: &str, default: f64| fits.number(key).unwrap_or(default);
+    let rows = |a: f64, b: f64, c: f64, d: f64| DMat2::from_cols(DVec2::new(a, c), DVec2::new(b, d));
+    if fits.number("CD1_1").or(fits.number("CD1_2")).is_some() {
+        return Ok(rows(get("CD1_1", 0.0), get("CD1_2", 0.0), get("CD2_1", 0.0), get("CD2_2", 0.0)));
+    }
+    let step = |key: &'static str| fits.number(key).ok_or(PhotographError::NoWcs(key));
+    let (east, north) = (step("CDELT1")?, step("CDELT2")?);
+    let pc = if let Some(turn_deg) = fits.number("CROTA2") {
+        // The old convention: Calabretta and Greisen (2002), eq. 189.
+        let (sin, cos) = turn_deg.to_radians().sin_cos();
+        rows(cos, -sin * north / east, sin * east / north, cos)
+    } else {
+        rows(get("PC1_1", 1.0), get("PC1_2", 0.0), get("PC2_1", 0.0), get("PC2_2", 1.0))
+    };
+    Ok(DMat2::from_diagonal(DVec2::new(east, north)) * pc)
+}
