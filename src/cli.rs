@@ -12,6 +12,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 pub mod failure;
 /// The field session.
 pub mod observe;
+/// The observer's settings, and what is remembered between sessions.
+pub mod settings;
 /// Devices that are not there.
 pub mod simulate;
 /// The process that stops the mount if the session dies.

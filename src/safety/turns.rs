@@ -43,6 +43,12 @@ impl TurnCounter {
         TurnCounter { turned_deg: 0.0, last_azimuth_deg: None, certain: true, last_at: None }
     }
 
+    /// Nobody knows how the cable hangs.
+    #[must_use]
+    pub fn guess() -> TurnCounter {
+        TurnCounter { certain: false, ..TurnCounter::unwound() }
+    }
+
     /// Sets the mark: the observer has looked, and the cable hangs free where the telescope stands now.
     pub fn mark_unwound(&mut self) {
         self.turned_deg = 0.0;
@@ -99,7 +105,7 @@ impl TurnCounter {
         if self.turned_deg.is_finite() && self.last_azimuth_deg.is_none_or(f64::is_finite) {
             self
         } else {
-            TurnCounter { certain: false, ..TurnCounter::unwound() }
+            TurnCounter::guess()
         }
     }
 }
