@@ -8,6 +8,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+/// The catalogue files that are built into the program.
+pub mod catalogue;
 /// How a subcommand ends without doing what was asked.
 pub mod failure;
 /// The field session.
@@ -16,6 +18,8 @@ pub mod observe;
 pub mod settings;
 /// Devices that are not there.
 pub mod simulate;
+/// Where things are, and what is in a field.
+pub mod sky;
 /// The process that stops the mount if the session dies.
 pub mod supervise;
 
@@ -53,6 +57,12 @@ enum Command {
     /// Watch over a session; started by the session itself
     #[command(hide = true)]
     Supervise,
+    /// Say where something is, or what is in a field
+    #[command(subcommand)]
+    Sky(sky::Command),
+    /// Make the catalogue files that are built into the program
+    #[command(subcommand)]
+    Catalogue(catalogue::Command),
     /// Print the completions of a shell
     Completions {
         /// The shell to complete in
@@ -86,6 +96,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Observe(arguments)) => observe::run(&arguments),
         Some(Command::Simulate(device)) => simulate::run(&device),
         Some(Command::Supervise) => supervise::run(),
+        Some(Command::Sky(command)) => sky::run(&command, None),
+        Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);
