@@ -88,30 +88,25 @@ fn plain(c: char) -> char {
 /// Small letters, Greek ones in full, words apart.
 fn words(text: &str) -> Vec<String> {
     let mut spaced = String::new();
+    // A number stays with the Greek letter before it; a letter behind them starts the next word.
+    let mut after_greek = false;
     for c in text.chars().map(plain).flat_map(char::to_lowercase) {
-        match GREEK.iter().find(|row| row.0 == c) {
-            Some(row) => {
+        if let Some(row) = GREEK.iter().find(|row| row.0 == c) {
+            spaced.push(' ');
+            spaced.push_str(row.2);
+            after_greek = true;
+        } else if c.is_alphanumeric() {
+            if after_greek && !c.is_ascii_digit() {
                 spaced.push(' ');
-                spaced.push_str(row.2);
-                spaced.push('\u{1}');
+                after_greek = false;
             }
-            None if c == '\'' || c == '’' || c == '`' => {}
-            // A number stays with the Greek letter before it; a letter starts the next word.
-            None if c.is_alphanumeric() => {
-                if spaced.ends_with('\u{1}') {
-                    spaced.pop();
-                    if !c.is_ascii_digit() {
-                        spaced.push(' ');
-                    }
-                }
-                spaced.push(c);
-            }
-            None => {
-                spaced.push(' ');
-            }
+            spaced.push(c);
+        } else if !"'’`".contains(c) {
+            spaced.push(' ');
+            after_greek = false;
         }
     }
-    spaced.replace('\u{1}', " ").split_whitespace().map(str::to_owned).collect()
+    spaced.split_whitespace().map(str::to_owned).collect()
 }
 
 /// The form in which names are compared: small letters and digits only, no leading zeros, catalogues abbreviated.
@@ -205,10 +200,8 @@ impl Index {
     /// Names as they stand, the better known before the less; of stars of one name the brightest.
     fn named(&self, text: &str, v_mag: &impl Fn(u32) -> f32) -> Option<Target> {
         let key = key(text);
-        if let Some(number) = key.strip_prefix("hip") {
-            if let Ok(hip) = number.parse() {
-                return Some(Target::Star(hip));
-            }
+        if let Some(hip) = key.strip_prefix("hip").and_then(|number| number.parse().ok()) {
+            return Some(Target::Star(hip));
         }
         let start = self.entries.partition_point(|entry| entry.key < key);
         let same: Vec<&Entry> = self.entries[start..].iter().take_while(|entry| entry.key == key).collect();
