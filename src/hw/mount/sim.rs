@@ -70,25 +70,39 @@ impl Simulator {
         self.wire.arrive(bytes, now);
     }
 
-    /// Brings everything up to `now`: bytes are heard, commands obeyed, axes moved.
+    /// Brings everything up to `now`: bytes are heard, commands obeyed, axes moved, each at its own time, so that it does not
+    /// matter how often this is called.
     pub fn tick(&mut self, now: Duration) {
-        while let Some((byte, at)) = self.wire.next_heard(now) {
+        while let Some(at) = self.next_event().filter(|at| *at <= now) {
             self.controller.advance(at);
-            let answer = match self.framing.push(byte) {
-                Heard::Nothing => continue,
-                Heard::Control(byte) => self.controller.control(byte, at),
-                Heard::Command(body) => {
-                    self.wire.command_heard(&body, at);
-                    self.controller.obey(&body, at)
-                }
-            };
-            self.wire.reply(answer, at);
+            self.wire.happen(at);
+            for answer in self.controller.unasked() {
+                self.wire.reply(answer, at);
+            }
+            if let Some(byte) = self.wire.hear(at) {
+                self.hear(byte, at);
+            }
         }
         self.controller.advance(now);
-        for answer in self.controller.unasked(now) {
-            self.wire.reply(answer, now);
-        }
-        self.wire.tick(now);
+    }
+
+    /// The next time when something happens by itself, or a byte on its way has been heard.
+    fn next_event(&self) -> Option<Duration> {
+        [self.wire.heard_at(), self.wire.next_event(), self.controller.next_event()].into_iter().flatten().min()
+    }
+
+    /// One byte that the mount has heard.
+    fn hear(&mut self, byte: u8, at: Duration) {
+        let answer = match self.framing.push(byte) {
+            Heard::Nothing => return,
+            _ if self.wire.busy(at) => return,
+            Heard::Control(byte) => self.controller.control(byte),
+            Heard::Command(body) => {
+                self.wire.command_heard(&body, at);
+                self.controller.obey(&body, at)
+            }
+        };
+        self.wire.reply(answer, at);
     }
 
     /// The bytes whose last bit has reached the computer by `now`.
@@ -100,7 +114,7 @@ impl Simulator {
     /// When something will happen next without new bytes; `None` if only new bytes can change anything on the line.
     #[must_use]
     pub fn wake_at(&self) -> Option<Duration> {
-        self.wire.wake_at()
+        [self.next_event(), self.wire.first_to_send()].into_iter().flatten().min()
     }
 
     /// A client has opened the port: what it finds waiting (nothing, unless the fault `stale` is on).

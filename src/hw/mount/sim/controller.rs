@@ -16,7 +16,7 @@ use self::power::Power;
 use super::angles::{Form, digits};
 use super::answer::Answer;
 use super::fault::{Degree, Faults};
-use super::handset::{Handset, Wish};
+use super::handset::{Handset, Wish, messier_position};
 use super::settings::Settings;
 use super::tube::{Arrow, Goal, Tube};
 use crate::numerics::streams::Stream;
@@ -44,7 +44,8 @@ pub(super) struct Controller {
     random: Stream,
     /// Replies that nobody asked for.
     unasked: Vec<Answer>,
-    now: Duration,
+    /// Up to when time has passed; `None` before the first.
+    now: Option<Duration>,
     faults: Faults,
 }
 
@@ -66,7 +67,7 @@ impl Controller {
             goto_began: Duration::ZERO,
             random: Stream::seeded(settings.seed),
             unasked: Vec::new(),
-            now: Duration::ZERO,
+            now: None,
             faults,
         }
     }
@@ -74,8 +75,11 @@ impl Controller {
     /// Lets time pass: the axes move, and what a person or the power company does happens at its time.
     pub(super) fn advance(&mut self, now: Duration) {
         let before = self.now;
-        self.now = self.now.max(now);
-        let due = |at: Duration| before < at && at <= now || before == Duration::ZERO && at == Duration::ZERO;
+        if before.is_some_and(|before| now < before) {
+            return;
+        }
+        self.now = Some(now);
+        let due = |at: Duration| before.is_none_or(|before| before < at) && at <= now;
         if let Some((at, letter, lasts)) = self.faults.keypad
             && due(at)
             && let Some(arrow) = Arrow::of(letter as u8)
@@ -98,13 +102,24 @@ impl Controller {
         self.power_tick(now);
     }
 
+    /// When something will happen without a command.
+    pub(super) fn next_event(&self) -> Option<Duration> {
+        let faults = &self.faults;
+        let started = if let Power::Starting(until) = self.power { Some(until) } else { None };
+        let jump = faults.clock_jump.map(|(at, _)| at);
+        let keypad = faults.keypad.map(|(at, _, _)| at);
+        let scheduled = [faults.restart, faults.format_switch, jump, keypad].into_iter().flatten();
+        let ahead = scheduled.filter(|at| self.now.is_none_or(|now| now < *at));
+        ahead.chain(started).min()
+    }
+
     /// What the mount says of itself.
-    pub(super) fn unasked(&mut self, _now: Duration) -> Vec<Answer> {
+    pub(super) fn unasked(&mut self) -> Vec<Answer> {
         std::mem::take(&mut self.unasked)
     }
 
     /// ACK or EOT.
-    pub(super) fn control(&mut self, byte: u8, _at: Duration) -> Answer {
+    pub(super) fn control(&mut self, byte: u8) -> Answer {
         match byte {
             0x06 => self.ack(),
             _ => self.enter_downloader(),
@@ -237,13 +252,15 @@ impl Controller {
     fn grant(&mut self, wish: Wish, at: Duration) {
         match wish {
             Wish::Nothing => {}
-            Wish::Goto(ra, dec) => {
-                if self.tube.ground_of((ra, dec), at).1 > self.odds.lowest_deg {
-                    self.begin(Goal::Sky(ra, dec), at);
-                } else {
+            Wish::Messier(number) => match messier_position(number, self.calendar.year(at)) {
+                None => self.handset.say("Not simulated", ""),
+                Some(place) if self.tube.ground_of(place, at).1 < self.odds.lowest_deg => {
                     self.handset.say("Object is below", "the horizon");
                 }
-            }
+                Some((ra, dec)) => {
+                    self.begin(Goal::Sky(ra, dec), at);
+                }
+            },
             Wish::Speed(speed) => {
                 self.move_by(&[b'R', b'0' + speed], at);
             }

@@ -2,7 +2,9 @@
 
 mod menu;
 
-use self::menu::{Inside, MENU};
+pub(super) use self::menu::messier_position;
+
+use self::menu::Inside;
 use super::answer::Answer;
 
 /// A line of the display.
@@ -15,8 +17,8 @@ const LAST_COLUMN: usize = 15;
 pub(super) enum Wish {
     /// Nothing but another picture on the display.
     Nothing,
-    /// Slew to a right ascension and a declination of J2000, degrees.
-    Goto(f64, f64),
+    /// Slew to a Messier object.
+    Messier(usize),
     /// One of the speeds 1 to 9.
     Speed(u8),
     /// The question about daylight saving was answered.
@@ -146,10 +148,7 @@ fn next(page: Page, code: u8) -> (Page, Wish) {
             Ok(number @ 1..=110) => (Page::Found(number), Wish::Nothing),
             _ => (Page::Number(String::new()), Wish::Nothing),
         },
-        (Page::Found(number), 24 | 71) => match menu::messier_position(number) {
-            Some((ra, dec)) => (Page::Found(number), Wish::Goto(ra, dec)),
-            None => (Page::Says("Not simulated".to_owned(), format!("Messier {number}")), Wish::Nothing),
-        },
+        (Page::Found(number), 24 | 71) => (Page::Found(number), Wish::Messier(number)),
         (Page::Found(_), 9) => (Page::Number(String::new()), Wish::Nothing),
         (Page::Position | Page::Says(..), 9) => (Page::Menu(vec![0]), Wish::Nothing),
         (page, _) => (page, Wish::Nothing),
@@ -187,5 +186,3 @@ fn padded(mut line: Vec<u8>) -> Vec<u8> {
     }
     line
 }
-
-const _: () = assert!(!MENU.is_empty());

@@ -89,7 +89,7 @@ pub(super) struct Tube {
 /// The next step after a time.
 fn grid_after(at: Duration) -> Duration {
     let steps = at.as_nanos() / STEP.as_nanos() + 1;
-    STEP * u32::try_from(steps).unwrap_or(u32::MAX)
+    Duration::from_nanos(u64::try_from(steps * STEP.as_nanos()).unwrap_or(u64::MAX))
 }
 
 impl Tube {

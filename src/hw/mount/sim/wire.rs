@@ -32,6 +32,8 @@ pub(super) struct Wire {
     incoming_free: Duration,
     /// Bytes to the computer, with the time when each can be read.
     outgoing: VecDeque<(Duration, u8)>,
+    /// When the last byte to the computer is out.
+    outgoing_free: Duration,
     /// Until when the mount is occupied with its reply.
     busy_until: Duration,
     /// Held back until the next byte arrives, or until the next reply.
@@ -43,6 +45,8 @@ pub(super) struct Wire {
     flood_at: Duration,
     broken: bool,
     unplugged: Option<Span>,
+    /// What was under way when the plug was pulled has been lost.
+    pulled: bool,
     unplug_at: Option<Vec<u8>>,
     random: Stream,
     delay: (Duration, Duration),
@@ -57,6 +61,7 @@ impl Wire {
             incoming: VecDeque::new(),
             incoming_free: Duration::ZERO,
             outgoing: VecDeque::new(),
+            outgoing_free: Duration::ZERO,
             busy_until: Duration::ZERO,
             held: Vec::new(),
             glued: Vec::new(),
@@ -66,6 +71,7 @@ impl Wire {
             flood_at: faults.flood.map_or(Duration::ZERO, |(at, _)| at),
             broken: false,
             unplugged: faults.unplug,
+            pulled: false,
             unplug_at: faults.unplug_at.clone().map(String::into_bytes),
             random: Stream::seeded(settings.seed ^ 0x7769_7265),
             delay: settings.reply_delay,
@@ -89,33 +95,30 @@ impl Wire {
         }
     }
 
-    /// The next byte that the mount hears by `now`, and when.
-    pub(super) fn next_heard(&mut self, now: Duration) -> Option<(u8, Duration)> {
-        loop {
-            let at = self.heard_at()?;
-            if at > now {
-                return None;
-            }
-            let (_, byte) = self.incoming.pop_front()?;
-            if self.broken_at(at) {
-                continue;
-            }
-            if self.faults.looped || self.faults.echo {
-                self.send_raw(&[byte], at);
-            }
-            if self.faults.looped {
-                continue;
-            }
-            if !self.held.is_empty() {
-                let held = std::mem::take(&mut self.held);
-                self.send(&held, at);
-            }
-            return Some((self.misheard(byte), at));
+    /// The byte that the mount hears at `at`, if one is complete by then.
+    pub(super) fn hear(&mut self, at: Duration) -> Option<u8> {
+        if self.heard_at()? > at {
+            return None;
         }
+        let (_, byte) = self.incoming.pop_front()?;
+        if self.broken_at(at) {
+            return None;
+        }
+        if self.faults.looped || self.faults.echo {
+            self.send_raw(&[byte], at);
+        }
+        if self.faults.looped {
+            return None;
+        }
+        if !self.held.is_empty() {
+            let held = std::mem::take(&mut self.held);
+            self.send(&held, at);
+        }
+        Some(self.misheard(byte))
     }
 
     /// When the next byte on its way will be heard: not before the mount is done with its reply.
-    fn heard_at(&self) -> Option<Duration> {
+    pub(super) fn heard_at(&self) -> Option<Duration> {
         self.incoming.front().map(|(at, _)| (*at).max(self.busy_until))
     }
 
@@ -124,15 +127,13 @@ impl Wire {
         if self.unplug_at.as_ref().is_some_and(|beginning| body.starts_with(beginning)) {
             self.unplug_at = None;
             self.unplugged = Some(Span { from: at, lasts: UNPLUGGED });
+            self.pulled = false;
         }
     }
 
     /// Sends a reply, which begins some milliseconds after `at`.
     pub(super) fn reply(&mut self, answer: Answer, at: Duration) {
-        if self.faults.silence.is_some_and(|span| span.holds(at)) {
-            return;
-        }
-        if self.busy(at) {
+        if self.silent(at) {
             return;
         }
         self.busy_until = self.busy_until.max(at + Duration::from_millis(1));
@@ -144,7 +145,7 @@ impl Wire {
         let mut start = at + wait;
         let parts = answer.parts.len();
         for (number, (after, bytes)) in answer.parts.into_iter().enumerate() {
-            start = start.max(self.busy_until) + after;
+            start = start.max(self.outgoing_free) + after;
             if answer.held && number + 1 == parts {
                 self.held = bytes;
                 self.held.truncate(OUTGOING_MOST);
@@ -152,10 +153,15 @@ impl Wire {
                 self.spoken(bytes, start);
             }
         }
+        self.busy_until = self.busy_until.max(self.outgoing_free);
     }
 
-    /// A busy mount answers anything with NAK.
-    fn busy(&mut self, at: Duration) -> bool {
+    fn silent(&self, at: Duration) -> bool {
+        self.faults.silence.is_some_and(|span| span.holds(at))
+    }
+
+    /// A busy mount answers a command with NAK and does not obey it.
+    pub(super) fn busy(&mut self, at: Duration) -> bool {
         if self.nak_left == 0 && self.faults.nak > 0.0 && self.random.chance(self.faults.nak) {
             self.nak_left = 1 + u32::from(self.random.byte() % 3);
         }
@@ -164,7 +170,10 @@ impl Wire {
         }
         self.nak_left -= 1;
         let after = Duration::from_secs_f64(self.random.uniform() * NAK_WITHIN_S);
-        self.send(&[0x15], at + after);
+        if !self.silent(at) {
+            self.send(&[0x15], at + after);
+            self.busy_until = self.outgoing_free;
+        }
         true
     }
 
@@ -188,8 +197,8 @@ impl Wire {
 
     fn send_raw(&mut self, bytes: &[u8], start: Duration) {
         for byte in bytes {
-            let done = self.busy_until.max(start) + BYTE;
-            self.busy_until = done;
+            let done = self.outgoing_free.max(start) + BYTE;
+            self.outgoing_free = done;
             if self.outgoing.len() < OUTGOING_MOST && !self.broken_at(done) {
                 self.outgoing.push_back((self.batched(done), *byte));
             }
@@ -200,29 +209,34 @@ impl Wire {
         if !self.usb_batching {
             return at;
         }
-        let periods = at.as_nanos().div_ceil(USB_PERIOD.as_nanos());
-        USB_PERIOD * u32::try_from(periods).unwrap_or(u32::MAX)
+        let periods = at.as_millis().div_ceil(USB_PERIOD.as_millis());
+        Duration::from_millis(u64::try_from(periods * USB_PERIOD.as_millis()).unwrap_or(u64::MAX)).max(at)
     }
 
-    /// What happens on the line by itself.
-    pub(super) fn tick(&mut self, now: Duration) {
-        if let Some(span) = self.faults.line_break
-            && !self.broken
-            && now >= span.from
-        {
+    /// When something happens on the line by itself.
+    pub(super) fn next_event(&self) -> Option<Duration> {
+        let flood = (self.flood_left > 0).then_some(self.flood_at);
+        let broken = self.faults.line_break.filter(|_| !self.broken).map(|span| span.from);
+        let unplugged = self.unplugged.filter(|_| !self.pulled).map(|span| span.from);
+        [flood, broken, unplugged].into_iter().flatten().min()
+    }
+
+    /// What happens on the line by itself at `at`.
+    pub(super) fn happen(&mut self, at: Duration) {
+        if !self.broken && self.broken_at(at) {
+            self.outgoing.push_back((at, 0));
             self.broken = true;
-            self.outgoing.push_back((span.from, 0));
         }
-        while self.flood_left > 0 && self.flood_at <= now && self.outgoing.len() < OUTGOING_MOST {
-            self.flood_left -= 1;
-            let byte = self.random.byte();
-            let at = self.flood_at;
-            self.flood_at = at.max(self.busy_until) + BYTE;
-            self.send_raw(&[if byte == b'#' { b'!' } else { byte }], at);
-        }
-        if !self.plugged(now) {
+        if !self.pulled && !self.plugged(at) {
+            self.pulled = true;
             self.incoming.clear();
             self.client_left();
+        }
+        if self.flood_left > 0 && self.flood_at <= at {
+            self.flood_left -= 1;
+            let byte = self.random.byte();
+            self.send_raw(&[if byte == b'#' { b'!' } else { byte }], at);
+            self.flood_at = self.outgoing_free;
         }
     }
 
@@ -235,10 +249,9 @@ impl Wire {
         self.outgoing.drain(..ready).map(|(_, byte)| byte).collect()
     }
 
-    pub(super) fn wake_at(&self) -> Option<Duration> {
-        let flood = (self.flood_left > 0).then_some(self.flood_at);
-        let unplug = self.unplugged.map(|span| span.from);
-        [self.heard_at(), self.outgoing.front().map(|(at, _)| *at), flood, unplug].into_iter().flatten().min()
+    /// When the first byte that waits to be sent is out.
+    pub(super) fn first_to_send(&self) -> Option<Duration> {
+        self.outgoing.front().map(|(at, _)| *at)
     }
 
     pub(super) fn client_came(&mut self, now: Duration) {

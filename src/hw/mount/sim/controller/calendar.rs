@@ -95,6 +95,11 @@ impl Calendar {
         Some(Answer::bytes(bytes))
     }
 
+    /// The year and its fraction.
+    pub(super) fn year(&self, now: Duration) -> f64 {
+        1970.0 + self.utc(now).0 / (365.2425 * 86_400.0)
+    }
+
     /// `MM/DD/YY#`, local.
     fn date(&self, now: Duration) -> Option<Vec<u8>> {
         let date = civil(self.local_s(now))?.date();

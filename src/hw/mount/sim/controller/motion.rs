@@ -29,7 +29,7 @@ impl Controller {
             b"MS" => Some(self.go_to_target(at)),
             b"MA" => Some(self.go_to_ground(at)),
             b"D" => Some(self.bars(at)),
-            b"CM" => Some(self.sync(at)),
+            b"CM" => Some(self.sync()),
             b"CL" => Some(Answer::silent()),
             [b'M', letter] => self.arrow(*letter),
             [b'M', b'g', letter, milliseconds @ ..] => self.pulse(*letter, milliseconds, at),
@@ -82,7 +82,7 @@ impl Controller {
     }
 
     /// `:CM#`: a static text.
-    fn sync(&mut self, _at: Duration) -> Answer {
+    fn sync(&mut self) -> Answer {
         let (ra, dec) = self.told.target;
         self.tube.sync(ra, dec);
         Answer { held: self.faults.hold_sync, ..Answer::text(" M31 EX GAL MAG 3.5 SZ178.0'") }

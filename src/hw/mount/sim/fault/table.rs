@@ -4,6 +4,7 @@ use super::read::{chance, count, milliseconds, number, seconds, span, switch, wo
 use super::{Degree, FaultError, Faults, plain};
 
 /// One fault that can be switched on.
+#[derive(Debug)]
 pub struct Entry {
     /// Its name.
     pub name: &'static str,

@@ -79,9 +79,19 @@ pub(super) fn messier() -> Vec<usize> {
     vec![0, 1, 0]
 }
 
-/// Where a Messier object stands, J2000 degrees, if the simulated library knows it.
-pub(super) fn messier_position(number: usize) -> Option<(f64, f64)> {
-    MESSIER.iter().find(|object| object.0 == number).map(|object| (object.1, object.2))
+/// Where a Messier object stands in this year, degrees of date, if the simulated library knows it: to an arcminute.
+///
+/// ```text
+/// d ra / dt = m + n sin(ra) tan(dec)     d dec / dt = n cos(ra)      m = 46.124, n = 20.043 arcseconds a year
+/// ```
+///
+/// Meeus, Astronomical Algorithms, ch. 21 (low accuracy).
+pub(in super::super) fn messier_position(number: usize, year: f64) -> Option<(f64, f64)> {
+    let object = MESSIER.iter().find(|object| object.0 == number)?;
+    let (ra, dec) = (object.1.to_radians(), object.2.to_radians());
+    let years = year - 2000.0;
+    let d_ra = (46.124 + 20.043 * ra.sin() * dec.tan()) * years / 3600.0;
+    Some((object.1 + d_ra, object.2 + 20.043 * ra.cos() * years / 3600.0))
 }
 
 /// The second line of a Messier object.
