@@ -14,6 +14,12 @@ pub mod catalogue;
 pub mod failure;
 /// The field session.
 pub mod observe;
+/// What the telescope shows with each eyepiece.
+pub mod optics;
+/// One picture as the projector would show it.
+pub mod overlay;
+/// A folder of the observer's photographs.
+pub mod photographs;
 /// The observer's settings, and what is remembered between sessions.
 pub mod settings;
 /// Devices that are not there.
@@ -63,6 +69,10 @@ enum Command {
     /// Make the catalogue files that are built into the program
     #[command(subcommand)]
     Catalogue(catalogue::Command),
+    /// Make one picture as the projector would show it, without a session
+    Overlay(Box<overlay::Arguments>),
+    /// Say what the telescope shows with each eyepiece
+    Optics(optics::Arguments),
     /// Print the completions of a shell
     Completions {
         /// The shell to complete in
@@ -98,6 +108,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Supervise) => supervise::run(),
         Some(Command::Sky(command)) => sky::run(&command, None),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
+        Some(Command::Overlay(arguments)) => overlay::run(&arguments, None),
+        Some(Command::Optics(arguments)) => optics::run(&arguments),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);

@@ -1,0 +1,262 @@
+//! `scotopic overlay`: one picture as the projector would show it, without a session.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Failure, answer, answer_json, photographs};
+use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Scene, Style};
+use crate::picture::png;
+use crate::sky::astrometry::{Astrometry, Reduction};
+use crate::sky::catalogue::{Catalogue, Object};
+use crate::sky::coords::Equatorial;
+use crate::sky::delta_t;
+use crate::sky::field::FieldOfView;
+use crate::sky::optics::Instrument;
+use crate::sky::pointing::{Motion, Pointing};
+use crate::sky::site::Site;
+use crate::sky::time::{Moment, Utc};
+use crate::units::{Angle, Magnitude, SurfaceBrightness};
+
+/// The settings of `overlay`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A name: M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
+    #[arg(value_name = "NAME", required_unless_present = "ra", conflicts_with = "ra")]
+    pub name: Vec<String>,
+    /// Right ascension (J2000) in degrees, in place of a name
+    #[arg(long, value_name = "DEG", requires = "dec", allow_hyphen_values = true)]
+    pub ra: Option<f64>,
+    /// Declination (J2000) in degrees, with --ra
+    #[arg(long, value_name = "DEG", requires = "ra", allow_hyphen_values = true)]
+    pub dec: Option<f64>,
+    /// Focal length of the eyepiece: one of the instrument's, or any, taken as a Plössl (default: the instrument's first)
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    pub eyepiece: Option<f64>,
+    /// Over the object, beside it, or off
+    #[arg(long, value_name = "MODE", default_value_t = Mode::Over)]
+    pub mode: Mode,
+    /// Instant, UTC: 2026-11-22T20:00:00Z (default: now)
+    #[arg(long, value_name = "RFC3339", value_parser = Utc::from_rfc3339)]
+    pub at: Option<Utc>,
+    /// Observing site in degrees, north and east positive, and metres: it turns the field of an alt-azimuth mount
+    #[arg(long, value_name = "LAT,LON,ELEV", allow_hyphen_values = true)]
+    pub site: Option<Site>,
+    /// Folder of your photographs: FITS with WCS, PNG or JPEG with a TOML file beside each
+    #[arg(long, value_name = "DIR")]
+    pub photographs: Option<PathBuf>,
+    /// Telescope, eyepieces and projector (default: those of the thesis)
+    #[arg(long, value_name = "FILE")]
+    pub instrument: Option<PathBuf>,
+    /// Brightness of the sky's background in magnitudes per square arcsecond
+    #[arg(long, value_name = "MAG", default_value_t = 21.0)]
+    pub sky_brightness: f64,
+    /// Uncertainty of the pointing in arcminutes
+    #[arg(long, value_name = "ARCMIN", default_value_t = 2.0)]
+    pub uncertainty: f64,
+    /// Move the picture by pixels to the right and down, as the arrow keys do
+    #[arg(long, value_name = "RIGHT,DOWN", value_parser = pair, allow_hyphen_values = true)]
+    pub nudge: Option<(f64, f64)>,
+    /// Everything red, also stars and photographs
+    #[arg(long)]
+    pub red: bool,
+    /// Overall brightness, 0 to 1
+    #[arg(long, value_name = "GAIN", default_value_t = 1.0)]
+    pub gain: f32,
+    /// Write the picture to this PNG file
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Answer in JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `overlay --json` answers.
+#[derive(Debug, Serialize)]
+struct Answer<'a> {
+    out: &'a Path,
+    width_px: usize,
+    height_px: usize,
+    target: Option<&'a str>,
+    ra_j2000_deg: f64,
+    dec_j2000_deg: f64,
+    eyepiece_mm: f64,
+    magnification: f64,
+    true_field_arcmin: f64,
+    scale_arcsec_px: f64,
+    /// From the picture's top counter-clockwise.
+    north_deg: f64,
+    mirrored: bool,
+    mode: Mode,
+    stars: usize,
+    objects: Vec<&'static str>,
+    photographs: Vec<&'a str>,
+    black: bool,
+}
+
+/// Runs the subcommand; `profile_site` is the observer's own site, used where none is given.
+///
+/// # Errors
+/// No such name, a number out of its range, a file that cannot be read or written.
+pub fn run(arguments: &Arguments, profile_site: Option<Site>) -> Result<(), Failure> {
+    // Where to look, when, through what.
+    let catalogue = Catalogue::embedded();
+    let target = target(arguments, catalogue)?;
+    let entry = match &target {
+        Some(object) => object.astrometry,
+        None => Astrometry::fixed(position(arguments)?),
+    };
+    let instrument = instrument(arguments.instrument.as_deref(), arguments.eyepiece)?;
+    let site = arguments.site.or(profile_site);
+    if site.is_none() {
+        note("no --site was given: the field is drawn with north where the tube's upper side is");
+    }
+    let utc = arguments.at.unwrap_or_else(now);
+    let moment = Moment { utc, delta_t_s: delta_t::default_seconds(utc) };
+    let style = style(arguments)?;
+    let eye = Eye {
+        sky: SurfaceBrightness(within("--sky-brightness", arguments.sky_brightness, 10.0, 25.0)?),
+        ..Eye::default()
+    };
+
+    // The field, what is in it, and the picture.
+    let mut pointing = Pointing {
+        position: Reduction::at(&moment).apparent(&entry),
+        uncertainty: Angle::arcminutes(within("--uncertainty", arguments.uncertainty, 0.0, 600.0)?),
+        motion: Motion::Tracking,
+        stale: false,
+    };
+    let mut field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
+    if let Some((right, down)) = arguments.nudge {
+        pointing.position = field.nudge(right, down).applied(&pointing.position);
+        field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
+    }
+    let photographs = photographs(arguments.photographs.as_deref())?;
+    let faintest = instrument.limiting_magnitude(eye.pupil_mm, eye.sky);
+    let found = catalogue.within(&field.centre(), field.radius(), Magnitude(faintest.0.max(11.0)));
+    let scene = Scene { found: &found, target: target.as_ref(), photographs: &photographs, catalogue };
+    let picture = Composer::default().compose(&scene, &field, &eye, &style);
+    write(&arguments.out, &png::encode(&picture).map_err(Failure::failed)?)?;
+
+    let shown = Answer {
+        out: &arguments.out,
+        width_px: picture.width(),
+        height_px: picture.height(),
+        target: target.as_ref().map(|target| target.name.as_str()),
+        ra_j2000_deg: field.centre().ra().to_degrees(),
+        dec_j2000_deg: field.centre().dec().to_degrees(),
+        eyepiece_mm: instrument.eyepiece().focal_length_mm,
+        magnification: instrument.magnification(),
+        true_field_arcmin: instrument.true_field().to_arcminutes(),
+        scale_arcsec_px: instrument.pixel_scale().to_arcseconds(),
+        north_deg: field.projection.north().wrapped().to_degrees(),
+        mirrored: field.projection.mirrored(),
+        mode: style.mode,
+        stars: found.stars.len(),
+        objects: found.objects.iter().map(|object| object.name).collect(),
+        photographs: photographs.iter().map(|photograph| photograph.name.as_str()).collect(),
+        black: picture.is_black(),
+    };
+    if arguments.json {
+        return answer_json(&shown);
+    }
+    answer(&format!(
+        "{}: {} mm, {:.0}x, {:.1}' of sky, {:.3}\"/px, {} stars, {} deep-sky objects",
+        arguments.out.display(),
+        shown.eyepiece_mm,
+        shown.magnification,
+        shown.true_field_arcmin,
+        shown.scale_arcsec_px,
+        shown.stars,
+        shown.objects.len()
+    ))
+}
+
+fn target(arguments: &Arguments, catalogue: &Catalogue) -> Result<Option<Object>, Failure> {
+    if arguments.ra.is_some() {
+        return Ok(None);
+    }
+    catalogue.search(&arguments.name.join(" ")).map(Some).map_err(Failure::failed)
+}
+
+fn position(arguments: &Arguments) -> Result<Equatorial<crate::sky::coords::J2000>, Failure> {
+    let ra = within("--ra", arguments.ra.unwrap_or(f64::NAN), 0.0, 360.0)?;
+    let dec = within("--dec", arguments.dec.unwrap_or(f64::NAN), -90.0, 90.0)?;
+    Ok(Equatorial::new(Angle::degrees(ra), Angle::degrees(dec)))
+}
+
+/// The instrument of a file, or the thesis' own, with an eyepiece in the holder.
+///
+/// # Errors
+/// The file cannot be read or is wrong; an eyepiece of no believable focal length.
+pub(super) fn instrument(file: Option<&Path>, eyepiece_mm: Option<f64>) -> Result<Instrument, Failure> {
+    let instrument = match file {
+        Some(path) => {
+            let text = fs::read_to_string(path).map_err(|error| {
+                Failure::Failed(format!("the instrument file {} cannot be read: {error}", path.display()))
+            })?;
+            Instrument::from_toml(&text).map_err(Failure::failed)?
+        }
+        None => Instrument::default(),
+    };
+    match eyepiece_mm {
+        Some(mm) => Ok(instrument.with_eyepiece(within("--eyepiece", mm, 1.0, 200.0)?)),
+        None => Ok(instrument),
+    }
+}
+
+fn style(arguments: &Arguments) -> Result<Style, Failure> {
+    let palette = if arguments.red { Palette::Red } else { Palette::Natural };
+    within("--gain", f64::from(arguments.gain), 0.0, 1.0)?;
+    Ok(Style { mode: arguments.mode, palette, gain: arguments.gain, ..Style::default() })
+}
+
+fn photographs(folder: Option<&Path>) -> Result<Vec<Photograph>, Failure> {
+    let Some(folder) = folder else { return Ok(Vec::new()) };
+    let (photographs, notes) = photographs::read_folder(folder)?;
+    notes.iter().for_each(|sentence| note(sentence));
+    Ok(photographs)
+}
+
+/// Writes a file whole: beside, then renamed.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut part = path.as_os_str().to_owned();
+    part.push(".part");
+    fs::write(&part, bytes)
+        .and_then(|()| fs::rename(&part, path))
+        .map_err(|error| Failure::Failed(format!("the picture {} cannot be written: {error}", path.display())))
+}
+
+/// A number in its range.
+///
+/// # Errors
+/// Names the option, the value and the range.
+pub(super) fn within(option: &str, value: f64, least: f64, most: f64) -> Result<f64, Failure> {
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(Failure::Asked(format!("{option} is {value}: give {least} to {most}")))
+    }
+}
+
+/// Reads `RIGHT,DOWN`.
+fn pair(text: &str) -> Result<(f64, f64), String> {
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|part| part.trim().parse().ok().filter(|n: &f64| n.abs() <= 1e5)).collect();
+    match numbers.as_deref() {
+        Some(&[right, down]) => Ok((right, down)),
+        _ => Err("a nudge is two numbers of pixels, right and down, like 12,-30".into()),
+    }
+}
+
+fn note(sentence: &str) {
+    let _ = writeln!(std::io::stderr(), "scotopic: {}", super::printable(sentence));
+}
+
+fn now() -> Utc {
+    Utc(SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64()))
+}
