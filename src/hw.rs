@@ -9,5 +9,11 @@ pub mod mount;
 pub mod port;
 /// The projector: framebuffer, files, memory, window.
 pub mod projector;
+/// A serial port, or a pty that looks like one.
+pub mod serial;
 /// A second process that stops the mount if this one dies during a slew.
 pub mod supervisor;
+/// A bridge that carries a serial line over TCP.
+pub mod tcp;
+/// Conversations recorded and replayed.
+pub mod trace;

@@ -1,5 +1,6 @@
 //! A line to a device: bytes out, bytes in, and why it failed.
 
+use std::os::fd::OwnedFd;
 use std::time::Duration;
 
 /// A line to a device. Serial ports, TCP, recorded traces and simulators are all ports.
@@ -21,6 +22,11 @@ pub trait Port: Send {
     fn set_now(&mut self, now: Duration) {
         let _ = now;
     }
+
+    /// A duplicate of the open file, for a supervisor that may have to send the stop after us; `None` where there is none.
+    fn duplicate(&self) -> Option<OwnedFd> {
+        None
+    }
 }
 
 impl<P: Port + ?Sized> Port for Box<P> {
@@ -34,6 +40,10 @@ impl<P: Port + ?Sized> Port for Box<P> {
 
     fn set_now(&mut self, now: Duration) {
         (**self).set_now(now);
+    }
+
+    fn duplicate(&self) -> Option<OwnedFd> {
+        (**self).duplicate()
     }
 }
 

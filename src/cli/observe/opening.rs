@@ -7,7 +7,7 @@ use crate::app::model::Opening;
 use crate::cli::Failure;
 use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{Ours, Settings, Timing};
-use crate::hw::mount::link::{Opener, Pump};
+use crate::hw::mount::link::{self, Opener, Pump};
 use crate::hw::mount::sim::Simulator;
 use crate::hw::mount::sim::port::SimulatedPort;
 use crate::hw::mount::sim::settings::Settings as Simulated;
@@ -73,6 +73,6 @@ fn opener(mount: &MountAddress, site: Option<Site>, start: Utc) -> Result<Opener
             let settings = Simulated::at(site, start);
             Ok(Box::new(move || Ok(Box::new(SimulatedPort::new(Simulator::new(settings.clone()))) as Box<dyn Port>)))
         }
-        _ => Err(Failure::failed("real lines are not wired yet")),
+        real => link::opener(real).ok_or_else(|| Failure::failed("this mount has no line")),
     }
 }
