@@ -9,7 +9,7 @@ use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{Ours, Settings, Timing};
 use crate::hw::mount::link::{self, Opener, Pump};
 use crate::hw::mount::sim::Simulator;
-use crate::hw::mount::sim::port::SimulatedPort;
+use crate::hw::mount::sim::port::SimulatedMount;
 use crate::hw::mount::sim::settings::Settings as Simulated;
 use crate::hw::port::Port;
 use crate::hw::projector;
@@ -70,8 +70,8 @@ fn opener(mount: &MountAddress, site: Option<Site>, start: Utc) -> Result<Opener
     match mount {
         MountAddress::Sim => {
             let site = site.unwrap_or(Simulated::default().site);
-            let settings = Simulated::at(site, start);
-            Ok(Box::new(move || Ok(Box::new(SimulatedPort::new(Simulator::new(settings.clone()))) as Box<dyn Port>)))
+            let mount = SimulatedMount::new(Simulator::new(Simulated::at(site, start)));
+            Ok(Box::new(move || Ok(Box::new(mount.open()?) as Box<dyn Port>)))
         }
         real => link::opener(real).ok_or_else(|| Failure::failed("this mount has no line")),
     }
