@@ -478,6 +478,18 @@ fn an_ordered_slew_is_not_stopped_for_running_fast_towards_a_low_target() {
 }
 
 #[test]
+fn a_goto_out_of_the_cone_is_not_stopped_before_the_mount_gets_going() {
+    let mut case = noon();
+    let (az, alt) = case.sun(0.0);
+    (case.from, case.to) = ((az, alt - 20.0), (az, alt - 45.0));
+    let fix = |ms| Fix { at: Duration::from_millis(ms), position: case.of_date(case.from) };
+    let tracking = Situation { motion: Motion::Tracking, ..case.situation() };
+    assert!(judge_motion(&tracking, &fix(0), &fix(500)).is_refused());
+    let ordered = Situation { ordered: Some(case.of_date(case.to)), ..tracking };
+    assert!(!judge_motion(&ordered, &fix(0), &fix(500)).is_refused());
+}
+
+#[test]
 fn an_ordered_slew_that_takes_the_dangerous_way_round_is_stopped() {
     // Ordered out of the cone through the north; the mount goes the other way, under the Sun.
     let case = Case { to: (10.0, 40.0), ..noon() };
