@@ -4,7 +4,7 @@
 //! line; they prove nothing about the instrument. The proof from outside is `tests/indi.rs` (INDI's own drivers) and the
 //! captured bytes of a real LX200GPS in the unit tests of both ends.
 
-#![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "conversation/cases.rs"]
 mod cases;
