@@ -3,6 +3,7 @@
 use super::scene::Scene;
 use crate::hw::mount::order::Order;
 use crate::safety::TurnCounter;
+use crate::sky::field::Nudge;
 
 /// Something to be done outside.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,10 +16,8 @@ pub enum Effect {
     Dark,
     /// Forget all that is believed of the mount, and ask it anew.
     Forget,
-    /// Keep the turns of the azimuth axis over restarts.
-    KeepTurns(TurnCounter),
-    /// Keep the eyepiece in the holder over restarts.
-    KeepEyepiece(usize),
+    /// Keep the turns of the azimuth axis and the nudge over restarts.
+    Keep(TurnCounter, Nudge),
     /// End the session: projector dark, terminal as it was.
     Quit,
 }

@@ -21,6 +21,8 @@ pub enum Event {
     Shown(Arc<Picture>),
     /// The projector could not show it: why, and what to do.
     ProjectorFailed(String),
+    /// Something around the session went wrong: what, and what to do.
+    Notice(String),
     /// Somebody outside asks the session to end.
     AskedToEnd,
 }

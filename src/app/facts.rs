@@ -39,8 +39,8 @@ pub fn listed(found: &Found, catalogue: &Catalogue) -> Vec<Listed> {
     brightest.truncate(STARS);
     brightest.sort_by(|a, b| a.separation.to_radians().total_cmp(&b.separation.to_radians()));
     let stars = brightest.into_iter().map(|star| Listed {
-        name: catalogue.star_name(star.id).map_or_else(|| "a star".to_owned(), |name| printable(&name)),
-        what: "star".to_owned(),
+        name: catalogue.star_name(star.id).map_or_else(|| "star".to_owned(), |name| printable(&name)),
+        what: String::new(),
         magnitude: Some(f64::from(star.v_mag)),
         separation: star.separation,
         position: star.astrometry.position,

@@ -14,7 +14,7 @@ use crate::picture::Picture;
 use crate::safety::suspend::Clocks;
 use crate::safety::{Acknowledgement, Clock, Fix, Rules, TurnCounter};
 use crate::sky::catalogue::Object;
-use crate::sky::coords::{Airless, Equatorial, Horizontal, J2000};
+use crate::sky::coords::{Airless, Equatorial, Horizontal, OfDate};
 use crate::sky::field::Nudge;
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::Pointing;
@@ -75,6 +75,8 @@ pub struct Opening {
     pub rules: Rules,
     /// The turns of the azimuth axis so far.
     pub turns: TurnCounter,
+    /// The observer's correction of the last session: kept until the next sync.
+    pub nudge: Nudge,
     /// Where the mount is, in words: `sim`, `serial:/dev/ttyUSB0`.
     pub mount: String,
     /// Where the picture goes, in words: `none`, `fb:/dev/fb0`.
@@ -203,7 +205,7 @@ impl Model {
             turns: opening.turns,
             acknowledged: None,
             here: None,
-            nudge: Nudge::default(),
+            nudge: opening.nudge,
             target: None,
             field: Vec::new(),
             instrument: opening.instrument.clone(),
@@ -240,7 +242,7 @@ impl Model {
 
     /// Where the target is now on the mount's sky.
     #[must_use]
-    pub fn target_of_date(&self) -> Option<Equatorial<crate::sky::coords::OfDate>> {
+    pub fn target_of_date(&self) -> Option<Equatorial<OfDate>> {
         let (target, moment) = (self.target.as_ref()?, self.moment()?);
         Some(crate::sky::astrometry::apparent(&target.astrometry, &moment))
     }
@@ -249,11 +251,5 @@ impl Model {
     #[must_use]
     pub fn nudged(&self) -> bool {
         self.nudge != Nudge::default()
-    }
-
-    /// The target's name and place, for the picture.
-    #[must_use]
-    pub fn target_in_picture(&self) -> Option<(String, Equatorial<J2000>)> {
-        self.target.as_ref().map(|target| (target.name.clone(), target.astrometry.position))
     }
 }

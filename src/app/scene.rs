@@ -1,7 +1,7 @@
 //! What is to be drawn, and whether it differs from what was drawn: less than half a pixel is not drawn again.
 
 use crate::overlay::style::Mode;
-use crate::sky::coords::{Equatorial, J2000};
+use crate::sky::catalogue::Object;
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::Pointing;
 use crate::sky::site::Site;
@@ -32,7 +32,7 @@ pub struct Scene {
     /// How bright the picture is, 0 to 1.
     pub brightness: f32,
     /// The object whose facts are told, if one was chosen.
-    pub target: Option<(String, Equatorial<J2000>)>,
+    pub target: Option<Object>,
 }
 
 impl Scene {

@@ -43,6 +43,13 @@ pub fn update(model: &mut Model, event: Event) -> Vec<Effect> {
             model.say(super::log::Weight::Warning, &why, "");
             Vec::new()
         }
+        Event::Notice(text) => {
+            model.say(super::log::Weight::Warning, &text, "");
+            Vec::new()
+        }
         Event::AskedToEnd => goto::quit(model),
     }
 }
+
+#[cfg(test)]
+mod tests;

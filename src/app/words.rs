@@ -114,7 +114,7 @@ pub fn rows(model: &Model) -> Vec<Row> {
             format!("{:+.3}° {:+.3}° east", site.latitude.to_degrees(), site.longitude.to_degrees())
         }),
         row(now, "clock", &belief.clock, |clock| {
-            format!("{} (zone {:+.1} h)", clock.utc.to_rfc3339(), clock.offset_hours)
+            format!("{} (zone {:+.1} h)", clock.utc.to_rfc3339(), clock.offset_hours + 0.0)
         }),
         row(now, "sidereal", &belief.sidereal, |time| HoursMinutesSeconds(*time).to_string()),
     ]

@@ -14,6 +14,10 @@ use crate::sky::time::Utc;
 
 /// Clocks: the machine's, or one that runs as fast as the machine can.
 mod clock;
+/// The supervisor beside an open line.
+mod guard;
+/// What must be remembered over restarts.
+mod keeper;
 /// The line to the mount: a thread, or stepped by a virtual clock.
 mod line;
 /// Everything that is opened before the session begins.

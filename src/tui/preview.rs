@@ -58,7 +58,9 @@ impl Widget for Preview<'_> {
                 if self.theme.has_shades() {
                     let top = self.light(column, 2 * row, columns, 2 * rows);
                     let bottom = self.light(column, 2 * row + 1, columns, 2 * rows);
-                    cell.set_symbol("▀").set_fg(self.theme.light(top)).set_bg(self.theme.light(bottom));
+                    let (top, bottom) = (self.theme.light(top), self.theme.light(bottom));
+                    let dark = top == bottom && top == self.theme.black();
+                    cell.set_symbol(if dark { " " } else { "▀" }).set_fg(top).set_bg(bottom);
                 } else {
                     cell.set_char(self.dots(column, row, columns, rows)).set_style(self.theme.text(Level::Normal));
                 }

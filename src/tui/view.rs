@@ -112,24 +112,36 @@ fn draw_message(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect)
     frame.render_widget(Paragraph::new(text).style(style).wrap(Wrap { trim: false }), area);
 }
 
+/// The commands that are hinted at on the screen of the sky, the most wanted first: what does not fit is left out.
+const SKY: &[Action] = &[
+    Action::Stop,
+    Action::Search,
+    Action::Goto,
+    Action::NextEyepiece,
+    Action::OverlayMode,
+    Action::NudgeBack,
+    Action::Sync,
+    Action::Show(Screen::Help),
+    Action::Quit,
+    Action::Show(Screen::Mount),
+    Action::Show(Screen::Log),
+    Action::Show(Screen::Eyepieces),
+    Action::Show(Screen::Align),
+];
+
 /// The commands that are worth a hint on a screen, the stop always first.
-fn hinted(model: &Model) -> impl Iterator<Item = &'static Command> + '_ {
+fn hinted(model: &Model) -> Vec<&'static Command> {
     let screen = model.view.screen;
-    let worth = move |command: &&Command| match command.action {
-        Action::Stop => true,
-        Action::Goto | Action::Sync | Action::NudgeBack => command.when.is_now(model),
-        Action::Search | Action::NextEyepiece | Action::OverlayMode => screen == Screen::Sky,
-        Action::Show(target) => {
-            screen != Screen::Search && target != screen && (screen == Screen::Sky || target == Screen::Sky)
-        }
-        Action::Quit => screen == Screen::Sky,
-        _ => {
-            matches!(command.at, Where::On(screens) if screens == [screen])
-                && command.when.is_now(model)
-                && screen != Screen::Sky
-        }
+    let on_it = |command: &&Command| command.belongs_to(screen) && command.when.is_now(model);
+    let wanted = |action: &Action| COMMANDS.iter().filter(on_it).find(|command| command.action == *action);
+    if screen == Screen::Sky {
+        return SKY.iter().filter_map(wanted).collect();
+    }
+    let its_own = |command: &&Command| match command.at {
+        Where::On(screens) => screens == [screen] || command.action == Action::Show(Screen::Sky),
+        _ => command.action == Action::Stop,
     };
-    COMMANDS.iter().filter(move |command| command.belongs_to(screen)).filter(worth)
+    COMMANDS.iter().filter(on_it).filter(its_own).collect()
 }
 
 fn draw_keys(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {

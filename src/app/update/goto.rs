@@ -106,7 +106,7 @@ pub(super) fn quit(model: &mut Model) -> Vec<Effect> {
     if moving {
         effects.extend(stop(model));
     }
-    effects.push(Effect::KeepTurns(model.turns));
+    effects.push(Effect::Keep(model.turns, model.nudge));
     effects.push(Effect::Quit);
     effects
 }

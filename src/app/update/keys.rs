@@ -69,22 +69,23 @@ fn done(model: &mut Model, action: Action) -> Vec<Effect> {
         }
         Action::Goto => return goto::go(model),
         Action::NextObject => next_object(model),
-        Action::NextEyepiece => return use_eyepiece(model, model.instrument.eyepiece_index() + 1),
+        Action::NextEyepiece => use_eyepiece(model, model.instrument.eyepiece_index() + 1),
         Action::PreviousEyepiece => {
             let count = model.instrument.eyepieces.len();
-            return use_eyepiece(model, model.instrument.eyepiece_index() + count.saturating_sub(1));
+            use_eyepiece(model, model.instrument.eyepiece_index() + count.saturating_sub(1));
         }
-        Action::ChooseEyepiece => return use_eyepiece(model, model.view.bar),
+        Action::ChooseEyepiece => use_eyepiece(model, model.view.bar),
         Action::OverlayMode => model.overlay.mode = model.overlay.mode.next(),
         Action::OverlayBrighter => model.overlay.brightness = (model.overlay.brightness + 1).min(10),
         Action::OverlayDimmer => model.overlay.brightness = model.overlay.brightness.saturating_sub(1).max(1),
         Action::ScreenBrighter => model.view.brightness = (model.view.brightness + 1).min(10),
         Action::ScreenDimmer => model.view.brightness = model.view.brightness.saturating_sub(1).max(1),
-        Action::Nudge(arrow) => nudge(model, arrow, PUSH_PX),
-        Action::NudgeFinely(arrow) => nudge(model, arrow, 1.0),
+        Action::Nudge(arrow) => return nudge(model, arrow, PUSH_PX),
+        Action::NudgeFinely(arrow) => return nudge(model, arrow, 1.0),
         Action::NudgeBack => {
             model.nudge = Default::default();
             model.note("the picture stands where the mount says");
+            return vec![Effect::Keep(model.turns, model.nudge)];
         }
         Action::Sync => return goto::sync(model),
         Action::GiveClock => return give_clock(model),
@@ -94,7 +95,7 @@ fn done(model: &mut Model, action: Action) -> Vec<Effect> {
         Action::MarkUnwound => {
             model.turns.mark_unwound();
             model.note("the cable hangs free: the turns are counted from here");
-            return vec![Effect::KeepTurns(model.turns)];
+            return vec![Effect::Keep(model.turns, model.nudge)];
         }
         Action::Show(screen) => model.show(screen),
         Action::Up => model.view.bar = model.view.bar.saturating_sub(1),
@@ -116,13 +117,12 @@ fn scroll(model: &mut Model, by: usize) {
     model.view.bar = (model.view.bar + by).min(last);
 }
 
-fn use_eyepiece(model: &mut Model, index: usize) -> Vec<Effect> {
+fn use_eyepiece(model: &mut Model, index: usize) {
     let count = model.instrument.eyepieces.len().max(1);
     model.instrument.use_eyepiece(index % count);
     let eyepiece = model.instrument.eyepiece();
     let text = format!("{:.0} mm eyepiece, {:.0}×", eyepiece.focal_length_mm, model.instrument.magnification());
     model.note(text);
-    vec![Effect::KeepEyepiece(index % count)]
 }
 
 /// Takes the next deep-sky object in the field as the target; the list is nearest first.
@@ -141,10 +141,10 @@ fn next_object(model: &mut Model) {
 }
 
 /// Pushes the picture along the canvas: the field's centre moves the other way, and stays on the sky from then on.
-fn nudge(model: &mut Model, arrow: Arrow, by_px: f64) {
+fn nudge(model: &mut Model, arrow: Arrow, by_px: f64) -> Vec<Effect> {
     let (Some(here), Some(moment)) = (model.here, model.moment()) else {
         model.say(Weight::Note, "there is no picture to push yet", "");
-        return;
+        return Vec::new();
     };
     let (right, down) = match arrow {
         Arrow::Left => (-by_px, 0.0),
@@ -156,9 +156,10 @@ fn nudge(model: &mut Model, arrow: Arrow, by_px: f64) {
     let pushed = model.nudge.plus(field.nudge(right, down));
     if pushed.east.to_degrees().hypot(pushed.north.to_degrees()) > FARTHEST_DEG {
         model.say(Weight::Note, "the picture is pushed as far as it goes", "sync the mount on a star instead (S)");
-        return;
+        return Vec::new();
     }
     model.nudge = pushed;
+    vec![Effect::Keep(model.turns, pushed)]
 }
 
 fn give_clock(model: &mut Model) -> Vec<Effect> {

@@ -21,6 +21,11 @@ pub(super) fn told(model: &mut Model, belief: Belief, reports: Vec<Report>) -> V
     for report in reports {
         match report {
             Report::Position => effects.extend(position(model)),
+            Report::Synced { .. } => {
+                model.nudge = Default::default();
+                model.note(report.to_string());
+                effects.push(Effect::Keep(model.turns, model.nudge));
+            }
             other => heard(model, &other),
         }
     }
@@ -35,7 +40,7 @@ fn position(model: &mut Model) -> Vec<Effect> {
         let before = model.turns.turned().to_degrees();
         model.turns.observe(horizon::airless(&position, &moment, &site).azimuth(), at);
         let keep = (model.turns.turned().to_degrees() / 30.0).floor() != (before / 30.0).floor();
-        let mut effects = if keep { vec![Effect::KeepTurns(model.turns)] } else { Vec::new() };
+        let mut effects = if keep { vec![Effect::Keep(model.turns, model.nudge)] } else { Vec::new() };
         if let Some(before) = model.fix.replace(latest) {
             effects.extend(judged(model, &before, &latest));
         }
@@ -81,10 +86,6 @@ fn heard(model: &mut Model, report: &Report) {
         Report::StillLost { .. } | Report::Fault(_) | Report::BusyNak { .. } | Report::Resynchronised => {
             let utc = model.utc();
             model.log.add(utc, Weight::Warning, text);
-        }
-        Report::Synced { .. } => {
-            model.nudge = Default::default();
-            model.note(text);
         }
         Report::Connected { .. } => {
             if model.banner.as_ref().is_some_and(|banner| banner.weight != Weight::Alarm) {

@@ -67,13 +67,16 @@ fn scene(model: &Model, moment: Option<Moment>, horizon: Option<&Horizon>) -> Re
         rotation: horizon.map_or(Angle::ZERO, |horizon| horizon.parallactic_angle(&here.pointing.position)),
         mode: model.overlay.mode,
         brightness: f32::from(model.overlay.brightness) / 10.0,
-        target: model.target_in_picture(),
+        target: model.target.clone(),
     })
 }
 
 fn darkened(model: &mut Model, why: &'static str) -> Vec<Effect> {
     if model.projector == Projector::Dark(why) {
         return Vec::new();
+    }
+    if model.here.is_none_or(|here| !here.pointing.may_draw()) {
+        model.field.clear();
     }
     let lit = !matches!(model.projector, Projector::Dark(_));
     model.projector = Projector::Dark(why);

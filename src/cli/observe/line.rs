@@ -1,10 +1,13 @@
 //! The line to the mount: a thread of its own that waits for bytes, or, under a virtual clock, stepped by the session.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
 use super::clock::Clock;
+use super::guard::Guarded;
 use crate::hw::mount::driver::Ours;
 use crate::hw::mount::link::{Pump, Update};
 use crate::hw::mount::order::Order;
@@ -36,10 +39,11 @@ impl Line {
     pub(super) fn threaded(
         pump: Pump,
         clock: Clock,
-        told: impl FnMut(Update) -> bool + Send + 'static,
+        alive: Alive,
+        told: impl FnMut(Said) -> bool + Send + 'static,
     ) -> std::io::Result<Line> {
         let (words, heard) = channel();
-        thread::Builder::new().name("mount".into()).spawn(move || turn(pump, clock, &heard, told))?;
+        thread::Builder::new().name("mount".into()).spawn(move || turn(pump, clock, &alive, &heard, told))?;
         Ok(Line::Thread(words))
     }
 
@@ -61,20 +65,49 @@ impl Line {
     }
 }
 
-fn turn(mut pump: Pump, clock: Clock, heard: &Receiver<Word>, mut told: impl FnMut(Update) -> bool) {
+/// When the session's loop turned last. Its life is what the supervisor must know of, not this thread's.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Alive(Arc<AtomicU64>);
+
+impl Alive {
+    /// The loop has turned.
+    pub(super) fn now(&self, now: Duration) {
+        self.0.store(u64::try_from(now.as_millis()).unwrap_or(u64::MAX), Ordering::Relaxed);
+    }
+
+    /// Whether the loop turned within the last second.
+    fn is(&self, now: Duration) -> bool {
+        now.saturating_sub(Duration::from_millis(self.0.load(Ordering::Relaxed))) < Duration::from_secs(1)
+    }
+}
+
+/// What the thread says to the session.
+pub(super) enum Said {
+    /// The mount told something.
+    Update(Box<Update>),
+    /// There is no supervisor, and why.
+    Unguarded(String),
+}
+
+fn turn(mut pump: Pump, clock: Clock, alive: &Alive, heard: &Receiver<Word>, mut told: impl FnMut(Said) -> bool) {
+    let mut guarded = Guarded::default();
     loop {
         let now = clock.now();
-        if let Some(update) = pump.step(now)
-            && !told(update)
-        {
-            return;
+        let update = pump.step(now);
+        let unguarded = guarded.watch(&pump, alive.is(now), now);
+        let said =
+            update.map(|update| Said::Update(Box::new(update))).into_iter().chain(unguarded.map(Said::Unguarded));
+        if !said.into_iter().all(&mut told) {
+            break;
         }
         let wait = pump.wake_at().saturating_sub(clock.now()).clamp(Duration::from_millis(1), LOOK);
         match heard.recv_timeout(wait) {
             Ok(Word::Order(order)) => pump.order(order, clock.now()),
             Ok(Word::Forget(ours)) => pump.forget(ours, clock.now()),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return,
+            Err(RecvTimeoutError::Disconnected) => break,
         }
     }
+    pump.farewell();
+    guarded.leave();
 }

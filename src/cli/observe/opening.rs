@@ -1,23 +1,31 @@
-//! Everything that is opened before the session begins: site, time, mount, projector, instrument.
+//! Everything that is opened before the session begins: settings, site, time, mount, projector, instrument.
+
+use std::fs;
+use std::path::PathBuf;
 
 use super::Arguments;
 use super::clock::Clock;
 use super::projection::Projection;
 use crate::app::model::Opening;
 use crate::cli::Failure;
+use crate::cli::settings::Settings;
+use crate::cli::settings::disk::Files;
+use crate::cli::settings::state::{self, State};
 use crate::hw::mount::address::MountAddress;
-use crate::hw::mount::driver::{Ours, Settings, Timing};
+use crate::hw::mount::driver::{self, Ours};
 use crate::hw::mount::link::{self, Opener, Pump};
 use crate::hw::mount::sim::Simulator;
 use crate::hw::mount::sim::port::SimulatedMount;
 use crate::hw::mount::sim::settings::Settings as Simulated;
 use crate::hw::port::Port;
 use crate::hw::projector;
-use crate::safety::{Rules, TurnCounter};
+use crate::overlay::style::Eye;
+use crate::sky::field::Nudge;
 use crate::sky::optics::Instrument;
 use crate::sky::site::Site;
 use crate::sky::sun;
 use crate::sky::time::Utc;
+use crate::units::SurfaceBrightness;
 
 /// What the session needs.
 pub(super) struct Opened {
@@ -26,37 +34,52 @@ pub(super) struct Opened {
     pub(super) ours: Ours,
     pub(super) pump: Pump,
     pub(super) projection: Projection,
+    /// Where turns and nudge are kept over restarts; nowhere for a simulated telescope, which begins anew.
+    pub(super) state_path: Option<PathBuf>,
+    /// What should be told once the session runs.
+    pub(super) notices: Vec<String>,
 }
 
 /// Opens everything.
 pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
-    let mount = arguments.mount.clone().unwrap_or(MountAddress::Sim);
+    let settings = Settings::load(arguments.config.as_deref())?;
+    if let Some(missing) = arguments.config.as_ref().filter(|path| !path.exists()) {
+        return Err(Failure::Asked(format!("{} is not there: check the name of the settings file", missing.display())));
+    }
+    let mount = arguments.mount.clone().or(settings.mount).unwrap_or(MountAddress::Sim);
     let simulated = mount == MountAddress::Sim;
     if arguments.fast && !simulated {
         return Err(Failure::asked(
             "--fast makes time pass, which a real telescope cannot: leave it out, or use --mount sim",
         ));
     }
-    let site = arguments.site.or_else(|| simulated.then(|| Simulated::default().site));
+    let site = arguments.site.or(settings.site).or_else(|| simulated.then(|| Simulated::default().site));
     let begin = begin(arguments, simulated, site);
     let clock = if arguments.fast { Clock::made(begin) } else { Clock::real(begin) };
     let ours = Ours { utc_at_start: clock.utc_at_start(), site };
-    let timing = if matches!(mount, MountAddress::Tcp { .. }) { Timing::TCP } else { Timing::SERIAL };
+    let instrument = instrument(settings.instrument)?;
     let opener = opener(&mount, site, ours.utc_at_start)?;
-    let address = arguments.projector.clone().unwrap_or_default();
+    let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
     let projector = projector::open(&address, projector::Flip::default()).map_err(Failure::failed)?;
+    let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), ..Eye::default() };
+
+    let state_path = if simulated { None } else { state::default_path() };
+    let (state, notice) = state_path.as_ref().map_or((State::default(), None), |path| State::load(path, &mut Files));
+    let (east, north) = state.nudge.angles();
     let opening = Opening {
-        instrument: Instrument::default(),
+        instrument,
         site,
         simulated,
         time_stated: begin.is_some(),
-        rules: Rules::default(),
-        turns: TurnCounter::unwound(),
+        rules: settings.rules,
+        turns: state.turns,
+        nudge: Nudge { east, north },
         mount: mount.to_string(),
         projector: address.to_string(),
     };
-    let pump = Pump::new(Settings::new(timing, ours), opener);
-    Ok(Opened { opening, clock, ours, pump, projection: Projection::new(projector) })
+    let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
+    let projection = Projection::new(projector, Vec::new(), eye);
+    Ok(Opened { opening, clock, ours, pump, projection, state_path, notices: notice.into_iter().collect() })
 }
 
 /// When the session begins: as stated; with a simulated telescope in the middle of the coming night, so that a newcomer at
@@ -66,13 +89,23 @@ fn begin(arguments: &Arguments, simulated: bool, site: Option<Site>) -> Option<U
     arguments.time.or_else(|| site.filter(|_| simulated).map(|site| sun::next_midnight(now, &site)))
 }
 
+/// Telescope and eyepieces of a file, or the thesis' own.
+fn instrument(path: Option<PathBuf>) -> Result<Instrument, Failure> {
+    let Some(path) = path else { return Ok(Instrument::default()) };
+    let text = fs::read_to_string(&path).map_err(|error| {
+        Failure::Failed(format!("{} cannot be read: {error}; check the name in the settings", path.display()))
+    })?;
+    Instrument::from_toml(&text).map_err(|error| Failure::Asked(format!("{}: {error}", path.display())))
+}
+
+/// Opens the line. The first opening happens here, so that a wrong name is told before the screen is taken; from then on a
+/// lost line is opened again for ever.
 fn opener(mount: &MountAddress, site: Option<Site>, start: Utc) -> Result<Opener, Failure> {
-    match mount {
-        MountAddress::Sim => {
-            let site = site.unwrap_or(Simulated::default().site);
-            let mount = SimulatedMount::new(Simulator::new(Simulated::at(site, start)));
-            Ok(Box::new(move || Ok(Box::new(mount.open()?) as Box<dyn Port>)))
-        }
-        real => link::opener(real).ok_or_else(|| Failure::failed("this mount has no line")),
-    }
+    let Some(mut again) = link::opener(mount) else {
+        let settings = Simulated::at(site.unwrap_or(Simulated::default().site), start);
+        let mount = SimulatedMount::new(Simulator::new(settings));
+        return Ok(Box::new(move || Ok(Box::new(mount.open()?) as Box<dyn Port>)));
+    };
+    let mut first = Some(again().map_err(Failure::failed)?);
+    Ok(Box::new(move || first.take().map_or_else(&mut again, Ok)))
 }

@@ -2,8 +2,14 @@
 
 use std::time::Duration;
 
+use crate::app::scene::Scene;
 use crate::hw::projector::{Projector, ProjectorError};
+use crate::overlay::compose::{self, Composer};
+use crate::overlay::photograph::Photograph;
+use crate::overlay::style::{Eye, Style};
 use crate::picture::Picture;
+use crate::sky::catalogue::Catalogue;
+use crate::sky::field::FieldOfView;
 
 /// So many ages are kept: enough for the 99th percentile, and no more memory in the longest night.
 const KEPT: usize = 4096;
@@ -11,6 +17,9 @@ const KEPT: usize = 4096;
 /// A projector with a stopwatch.
 pub(super) struct Projection {
     projector: Box<dyn Projector>,
+    composer: Composer,
+    photographs: Vec<Photograph>,
+    eye: Eye,
     /// Pictures handed over.
     pub(super) frames: u64,
     /// Ages of the positions they were drawn from: the mount's reply to the picture handed over.
@@ -20,8 +29,28 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    pub(super) fn new(projector: Box<dyn Projector>) -> Projection {
-        Projection { projector, frames: 0, ages: Ages::default(), after_reply: Ages::default() }
+    pub(super) fn new(projector: Box<dyn Projector>, photographs: Vec<Photograph>, eye: Eye) -> Projection {
+        Projection {
+            projector,
+            composer: Composer::default(),
+            photographs,
+            eye,
+            frames: 0,
+            ages: Ages::default(),
+            after_reply: Ages::default(),
+        }
+    }
+
+    /// The picture of a scene.
+    pub(super) fn compose(&mut self, scene: &Scene) -> Picture {
+        let field = FieldOfView::new(&scene.pointing, &scene.instrument, &scene.moment, scene.site.as_ref());
+        let catalogue = Catalogue::embedded();
+        let faintest = scene.instrument.limiting_magnitude(self.eye.pupil_mm, self.eye.sky);
+        let found = catalogue.within(&field.centre(), field.radius(), faintest);
+        let style = Style { mode: scene.mode, gain: scene.brightness, ..Style::default() };
+        let drawn =
+            compose::Scene { found: &found, target: scene.target.as_ref(), photographs: &self.photographs, catalogue };
+        self.composer.compose(&drawn, &field, &self.eye, &style)
     }
 
     pub(super) fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {

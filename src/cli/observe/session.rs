@@ -5,7 +5,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use super::clock::Clock;
-use super::line::Line;
+use super::keeper::Keeper;
+use super::line::{Alive, Line, Said};
 use super::opening::Opened;
 use super::projection::Projection;
 use super::signals;
@@ -13,11 +14,11 @@ use super::summary::Summary;
 use crate::app::key::Key;
 use crate::app::scene::Scene;
 use crate::app::{Effect, Event, Model, update};
+use crate::cli::settings::state::{KeptNudge, State};
 use crate::cli::{Failure, answer_json};
 use crate::hw::mount::belief::LinkState;
 use crate::hw::mount::driver::Ours;
 use crate::hw::mount::link::Update;
-use crate::picture::Picture;
 use crate::sky::pointing::Motion;
 use crate::tui::terminal::Taken;
 use crate::tui::theme::Depth;
@@ -42,6 +43,7 @@ const LAST_STOP: Duration = Duration::from_millis(1500);
 enum Wake {
     Input(keys::Input),
     Mount(Box<Update>),
+    Notice(String),
     AskedToEnd,
     TerminalGone,
 }
@@ -53,6 +55,8 @@ struct Session {
     ours: Ours,
     line: Line,
     projection: Projection,
+    keeper: Keeper,
+    alive: Alive,
     screen: Option<(Taken, Depth)>,
     inbox: Receiver<Wake>,
     ended: bool,
@@ -119,15 +123,26 @@ fn listen(wakes: &Sender<Wake>) {
 
 impl Session {
     fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
-        let Opened { mut opening, clock, ours, pump, projection } = opened;
+        let Opened { mut opening, clock, ours, pump, projection, state_path, notices } = opened;
         opening.projector = projection.describe();
+        let told = wakes.clone();
+        let keeper = Keeper::new(state_path, move |why| drop(told.send(Wake::Notice(why)))).map_err(Failure::failed)?;
+        for notice in notices {
+            // The inbox is at hand: it cannot be closed.
+            let _ = wakes.send(Wake::Notice(notice));
+        }
+        let alive = Alive::default();
         let told = wakes.clone();
         signals::listen(move || drop(told.send(Wake::AskedToEnd))).map_err(Failure::failed)?;
         let told = wakes.clone();
         let line = match clock {
-            Clock::Real { .. } => {
-                Line::threaded(pump, clock, move |update| told.send(Wake::Mount(Box::new(update))).is_ok())
-            }
+            Clock::Real { .. } => Line::threaded(pump, clock, alive.clone(), move |said| {
+                let wake = match said {
+                    Said::Update(update) => Wake::Mount(update),
+                    Said::Unguarded(why) => Wake::Notice(why),
+                };
+                told.send(wake).is_ok()
+            }),
             Clock::Virtual { .. } => Ok(Line::Stepped(Box::new(pump))),
         };
         Ok(Session {
@@ -136,6 +151,8 @@ impl Session {
             ours,
             line: line.map_err(Failure::failed)?,
             projection,
+            keeper,
+            alive,
             screen: None,
             inbox,
             ended: false,
@@ -149,6 +166,7 @@ impl Session {
         self.happened(Event::Clocks(self.clock.read()));
         self.draw_screen()?;
         while !self.ended {
+            self.alive.now(self.clock.now());
             self.wait();
             self.happened(Event::Clocks(self.clock.read()));
             if over(self) {
@@ -215,6 +233,7 @@ impl Session {
                 self.happened(Event::Clocks(self.clock.read()));
                 self.happened(Event::Mount(Box::new(update.belief), update.reports));
             }
+            Wake::Notice(text) => self.happened(Event::Notice(text)),
             Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
         }
     }
@@ -243,14 +262,16 @@ impl Session {
                 self.ours.utc_at_start = self.clock.utc_at_start();
                 self.line.forget(self.ours, now);
             }
-            Effect::KeepTurns(_) | Effect::KeepEyepiece(_) => {}
+            Effect::Keep(turns, nudge) => {
+                self.keeper.keep(State { turns, nudge: KeptNudge::new(nudge.east, nudge.north) });
+            }
             Effect::Quit => self.ended = true,
         }
     }
 
     fn draw_picture(&mut self, scene: &Scene, fresh: bool) {
         self.dirty = true;
-        let picture = Arc::new(frame(scene));
+        let picture = Arc::new(self.projection.compose(scene));
         match self.projection.present(&picture) {
             Ok(()) => {
                 if let Some(age) = self.model.belief.position.age(self.clock.now()) {
@@ -294,8 +315,4 @@ impl Session {
             }
         }
     }
-}
-
-fn frame(scene: &Scene) -> Picture {
-    Picture::black(scene.instrument.projector.width_px as usize, scene.instrument.projector.height_px as usize)
 }

@@ -10,8 +10,6 @@
 
 mod facts;
 mod jobs;
-#[cfg(test)]
-mod tests;
 mod track;
 mod watch;
 mod wire;

@@ -144,6 +144,12 @@ impl Pump {
         if self.port.is_none() { self.open_at.min(self.driver.wake_at()) } else { self.driver.wake_at() }
     }
 
+    /// Whether a port is open.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.port.is_some()
+    }
+
     /// A duplicate of the open line for a supervisor; `None` when no port is open, or it has no file.
     #[must_use]
     pub fn duplicate_line(&self) -> Option<OwnedFd> {

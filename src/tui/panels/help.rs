@@ -11,7 +11,7 @@ use crate::app::commands::{COMMANDS, Where};
 use crate::tui::theme::{Level, Theme};
 
 pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
-    let room = usize::from(area.width).saturating_sub(26);
+    let room = usize::from(area.width).saturating_sub(31);
     let lines: Vec<Line<'_>> = COMMANDS
         .iter()
         .map(|command| {
@@ -22,7 +22,7 @@ pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Re
                 }
             };
             Line::from(vec![
-                Span::styled(format!("  {:<14}", command.keys_in_words()), theme.text(Level::Bright)),
+                Span::styled(format!("  {:<18} ", command.keys_in_words()), theme.text(Level::Bright)),
                 Span::styled(format!("{place:<10}"), theme.text(Level::Dim)),
                 Span::styled(cut(command.help, room), theme.text(Level::Normal)),
             ])

@@ -26,7 +26,7 @@ pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Re
     let counters = &model.belief.counters;
     lines.push(Line::styled(
         format!(
-            "  {} positions read, {} commands repeated, {} conversations mended, {} reconnects, {} faults",
+            "  {} positions, {} repeated, {} mended, {} reconnects, {} faults",
             counters.polls, counters.retries, counters.resyncs, counters.reconnects, counters.faults
         ),
         theme.text(Level::Dim),

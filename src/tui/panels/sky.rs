@@ -12,13 +12,13 @@ use crate::tui::preview::Preview;
 use crate::tui::theme::{Level, Theme};
 
 /// The texts are as wide as this, or a little less than half of the screen.
-const TEXTS: u16 = 38;
+const TEXTS: u16 = 37;
 
 pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     let texts = if area.width >= 120 { area.width * 2 / 5 } else { TEXTS.min(area.width / 2) };
     let [left, right] = Layout::horizontal([Constraint::Length(texts), Constraint::Min(0)]).areas(area);
     draw_texts(model, theme, frame, left);
-    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(2)]).areas(right);
+    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(3)]).areas(right);
     draw_picture(model, theme, frame, picture);
     draw_below(model, theme, frame, below);
 }
@@ -42,7 +42,10 @@ fn draw_texts(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     lines.push(heading(theme, "in the field"));
     let room = usize::from(area.height).saturating_sub(lines.len());
     if model.field.is_empty() {
-        lines.push(Line::styled("  nothing that is listed", theme.text(Level::Dim)));
+        lines.push(Line::styled(
+            if model.picture.is_some() { "  nothing that is listed" } else { "  not known now" },
+            theme.text(Level::Dim),
+        ));
     }
     for listed in model.field.iter().take(room) {
         let magnitude = listed.magnitude.map_or_else(|| "    ".to_owned(), |magnitude| format!("{magnitude:4.1}"));
@@ -88,19 +91,18 @@ fn draw_below(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
         Projector::Drawing | Projector::Showing => "showing",
         Projector::Failed(_) => "FAILED",
     };
-    let uncertainty =
-        model.here.map_or_else(String::new, |here| format!("  ±{:.1}′", here.pointing.uncertainty.to_arcminutes()));
-    let nudge = if model.nudged() {
-        format!("  nudged {:.1}′", model.nudge.east.to_arcminutes().hypot(model.nudge.north.to_arcminutes()))
-    } else {
-        String::new()
-    };
-    let overlay = format!(
-        " overlay {} {}/10  projector {} {shown}{uncertainty}{nudge}",
-        model.overlay.mode,
-        model.overlay.brightness,
-        crate::app::log::printable(&model.opening.projector),
-    );
-    let lines = vec![Line::styled(eyepiece, theme.text(Level::Normal)), Line::styled(overlay, theme.text(Level::Dim))];
+    let mut place = model.here.map_or_else(String::new, |here| {
+        format!(" position good to ±{:.1}′", here.pointing.uncertainty.to_arcminutes())
+    });
+    if model.nudged() {
+        let nudge = model.nudge.east.to_arcminutes().hypot(model.nudge.north.to_arcminutes());
+        place = format!("{place}, nudged {nudge:.1}′");
+    }
+    let overlay = format!(" overlay {}, brightness {}/10, {shown}", model.overlay.mode, model.overlay.brightness);
+    let lines = vec![
+        Line::styled(eyepiece, theme.text(Level::Normal)),
+        Line::styled(overlay, theme.text(Level::Dim)),
+        Line::styled(place, theme.text(Level::Dim)),
+    ];
     frame.render_widget(Paragraph::new(lines).style(theme.text(Level::Normal)), area);
 }

@@ -53,8 +53,7 @@ pub(super) struct Track {
     samples: VecDeque<Sample>,
     held: Option<Sample>,
     settling: bool,
-    /// Until when any position is believed.
-    jump_until: Option<Duration>,
+    any_jump: bool,
 }
 
 impl Track {
@@ -62,9 +61,9 @@ impl Track {
         *self = Track::default();
     }
 
-    /// The position may jump once until then: the mount was synchronised.
-    pub(super) fn allow_jump(&mut self, until: Duration) {
-        self.jump_until = Some(until);
+    /// The next position may be anywhere: the mount was synchronised.
+    pub(super) fn allow_jump(&mut self) {
+        self.any_jump = true;
     }
 
     /// Whether a position waits to be confirmed.
@@ -86,13 +85,11 @@ impl Track {
             held.position.separation(&sample.position) <= reach(&held, &sample)
                 && held.position.separation(&sample.position) <= jump
         });
-        let allowed = jump > STEP && self.jump_until.is_some_and(|until| sample.at <= until);
-        if (impossible || unexpected) && !confirmed && !allowed {
+        if (impossible || unexpected) && !confirmed && !self.any_jump {
             self.held = Some(sample);
             return Gate::Held { jump, seconds, impossible };
         }
-        if allowed || (impossible && confirmed) {
-            self.jump_until = None;
+        if std::mem::take(&mut self.any_jump) || (impossible && confirmed) {
             self.samples.clear();
         }
         if jump > STEP {

@@ -1,0 +1,327 @@
+//! Given an event, then this state and these effects.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::app::key::{Arrow, Key};
+use crate::app::log::Weight;
+use crate::app::model::{Opening, Projector, Screen};
+use crate::hw::mount::belief::{Belief, Known, LinkState};
+use crate::hw::mount::estimate::Estimate;
+use crate::hw::mount::order::{Order, Report};
+use crate::picture::Picture;
+use crate::safety::suspend::Clocks;
+use crate::safety::{Rules, TurnCounter};
+use crate::sky::astrometry::{Astrometry, apparent};
+use crate::sky::catalogue::{Band, Kind, Object};
+use crate::sky::coords::{Equatorial, J2000, OfDate};
+use crate::sky::optics::Instrument;
+use crate::sky::pointing::Motion;
+use crate::sky::site::Site;
+use crate::sky::sun;
+use crate::sky::time::{Moment, Utc};
+use crate::units::{Angle, Magnitude};
+
+/// An evening in November, M31 high up.
+const EVENING: &str = "2026-11-22T20:00:00Z";
+
+fn opening() -> Opening {
+    Opening {
+        instrument: Instrument::default(),
+        site: Some(Site::new(49.26, 7.04, 230.0).unwrap()),
+        simulated: true,
+        time_stated: true,
+        rules: Rules::default(),
+        turns: TurnCounter::unwound(),
+        nudge: Default::default(),
+        mount: "sim".into(),
+        projector: "none".into(),
+    }
+}
+
+fn clocks(begin: &str, seconds: f64) -> Event {
+    let begin = Duration::from_secs_f64(Utc::from_rfc3339(begin).unwrap().0);
+    let awake = Duration::from_secs_f64(seconds);
+    Event::Clocks(Clocks { wall: begin + awake, awake, always: Some(awake) })
+}
+
+fn here() -> Equatorial<OfDate> {
+    Equatorial::new(Angle::degrees(11.0), Angle::degrees(41.4))
+}
+
+fn object(name: &str, position: Equatorial<J2000>) -> Object {
+    Object {
+        name: name.into(),
+        names: vec![name.into()],
+        kind: Kind::Galaxy,
+        hubble: None,
+        astrometry: Astrometry::fixed(position),
+        magnitude: Some(Magnitude(3.4)),
+        band: Band::V,
+        colour_bv: None,
+        axes_arcmin: None,
+        position_angle: None,
+        surface_brightness: None,
+        constellation: "And",
+    }
+}
+
+fn m31() -> Object {
+    object("M31", Equatorial::new(Angle::degrees(10.6847), Angle::degrees(41.269)))
+}
+
+fn believed(position: Equatorial<OfDate>, motion: Motion, seconds: f64) -> Belief {
+    let at = Duration::from_secs_f64(seconds);
+    Belief {
+        link: LinkState::Ready,
+        position: Known::Confirmed { value: position, at },
+        motion: Known::Confirmed { value: motion, at },
+        estimate: Some(Estimate::new(position, motion, Angle::arcminutes(2.0), at)),
+        ..Belief::default()
+    }
+}
+
+fn told(belief: Belief) -> Event {
+    Event::Mount(Box::new(belief), vec![Report::Position])
+}
+
+fn press(model: &mut Model, keys: &str) -> Vec<Effect> {
+    keys.chars().flat_map(|c| update(model, Event::Key(if c == '\n' { Key::Enter } else { Key::Char(c) }))).collect()
+}
+
+/// A session that tracks M31 in the evening, its picture shown.
+fn tracking() -> Model {
+    let mut model = Model::new(opening());
+    let _ = update(&mut model, clocks(EVENING, 1.0));
+    let effects = update(&mut model, told(believed(here(), Motion::Tracking, 1.0)));
+    assert!(matches!(effects[..], [Effect::Draw(_)]), "{effects:?}");
+    let _ = update(&mut model, Event::Shown(Arc::new(Picture::black(4, 3))));
+    model.target = Some(m31());
+    let effects = update(&mut model, clocks(EVENING, 1.1));
+    assert!(matches!(effects[..], [Effect::Draw(_)]), "the target is marked: {effects:?}");
+    let _ = update(&mut model, Event::Shown(Arc::new(Picture::black(4, 3))));
+    model
+}
+
+fn orders(effects: &[Effect]) -> Vec<&Order> {
+    effects.iter().filter_map(|effect| if let Effect::Order(order) = effect { Some(order) } else { None }).collect()
+}
+
+#[test]
+fn enter_goes_to_the_target_at_its_place_of_date() {
+    let mut model = tracking();
+    let effects = press(&mut model, "\n");
+    let [Order::Goto(place)] = orders(&effects)[..] else { panic!("{effects:?}") };
+    let moment = Moment::at(Utc::from_rfc3339(EVENING).unwrap());
+    assert!(place.separation(&apparent(&m31().astrometry, &moment)).to_arcseconds() < 0.01);
+}
+
+#[test]
+fn without_a_site_or_with_a_dead_clock_nothing_goes_anywhere() {
+    let mut nowhere = Model::new(Opening { site: None, ..opening() });
+    let mut long_ago = Model::new(Opening { time_stated: false, ..opening() });
+    for (model, begin) in [(&mut nowhere, EVENING), (&mut long_ago, "2003-01-01T00:00:00Z")] {
+        let _ = update(model, clocks(begin, 1.0));
+        let _ = update(model, told(believed(here(), Motion::Tracking, 1.0)));
+        model.target = Some(m31());
+        let effects = press(model, "\n");
+        assert!(orders(&effects).is_empty(), "{effects:?}");
+        assert_eq!(model.counts.refused, 1);
+        let banner = model.banner.clone().unwrap();
+        assert!(banner.text.contains("Sun may be anywhere") && !banner.advice.is_empty(), "{banner:?}");
+    }
+}
+
+#[test]
+fn the_sun_is_not_gone_to() {
+    let noon = "2026-11-22T11:30:00Z";
+    let moment = Moment::at(Utc::from_rfc3339(noon).unwrap());
+    let mut model = Model::new(opening());
+    let _ = update(&mut model, clocks(noon, 1.0));
+    let _ = update(&mut model, told(believed(here(), Motion::Tracking, 1.0)));
+    let place = sun::apparent(&moment);
+    model.target = Some(object("beside the Sun", Equatorial::new(place.ra(), place.dec() + Angle::degrees(20.0))));
+    let effects = press(&mut model, "\n");
+    assert!(orders(&effects).is_empty(), "{effects:?}");
+    assert!(model.banner.unwrap().text.contains("from the Sun"));
+}
+
+#[test]
+fn every_stop_key_stops_from_every_screen_and_asks_nothing() {
+    for screen in Screen::ALL {
+        for key in [Key::Esc, Key::Ctrl('x'), Key::Char(' ')] {
+            let mut model = tracking();
+            model.show(screen);
+            let effects = update(&mut model, Event::Key(key));
+            if screen == Screen::Search && key == Key::Char(' ') {
+                assert_eq!(model.search.text, " ", "a space is typed");
+                continue;
+            }
+            assert_eq!(orders(&effects), [&Order::Stop], "{key} on {}", screen.title());
+        }
+    }
+}
+
+#[test]
+fn while_it_slews_the_projector_is_dark_and_it_lights_up_on_arrival() {
+    let mut model = tracking();
+    let slewing = Belief { slewing_to: Some(here()), ..believed(here(), Motion::Slewing, 2.0) };
+    let _ = update(&mut model, clocks(EVENING, 2.0));
+    assert_eq!(update(&mut model, told(slewing)), [Effect::Dark]);
+    assert_eq!((&model.projector, &model.picture), (&Projector::Dark("the telescope moves"), &None));
+    let arrived = Equatorial::new(Angle::degrees(80.0), Angle::degrees(10.0));
+    let _ = update(&mut model, clocks(EVENING, 9.0 - 5.0));
+    let effects = update(&mut model, told(believed(arrived, Motion::Tracking, 4.0)));
+    assert!(matches!(effects[..], [.., Effect::Draw(_)]), "{effects:?}");
+}
+
+#[test]
+fn a_stale_position_is_not_drawn_from() {
+    let mut model = tracking();
+    let mut effects = Vec::new();
+    for quarter in 5..=20 {
+        effects.extend(update(&mut model, clocks(EVENING, f64::from(quarter) / 4.0)));
+    }
+    assert_eq!(effects.last(), Some(&Effect::Dark));
+    assert_eq!(model.projector, Projector::Dark("the position is too old"));
+}
+
+#[test]
+fn after_a_suspend_nothing_is_believed_and_the_projector_is_dark() {
+    let mut model = tracking();
+    let begin = Duration::from_secs_f64(Utc::from_rfc3339(EVENING).unwrap().0);
+    let (awake, slept) = (Duration::from_secs(2), Duration::from_secs(600));
+    let woken = Clocks { wall: begin + awake + slept, awake, always: Some(awake + slept) };
+    assert_eq!(update(&mut model, Event::Clocks(woken)), [Effect::Dark, Effect::Forget]);
+    assert_eq!(model.belief.position, Known::Unknown);
+    assert!(model.here.is_none() && model.picture.is_none() && model.field.is_empty());
+    assert!(model.banner.unwrap().text.contains("slept for 600 s"));
+}
+
+#[test]
+fn a_program_that_stood_still_believes_nothing_either() {
+    let mut model = tracking();
+    assert_eq!(update(&mut model, clocks(EVENING, 20.0)), [Effect::Dark, Effect::Forget]);
+}
+
+#[test]
+fn a_nudge_moves_the_picture_stays_with_the_sky_and_ends_with_a_sync() {
+    let mut model = tracking();
+    let effects = update(&mut model, Event::Key(Key::Arrow(Arrow::Left)));
+    let [.., Effect::Draw(scene)] = &effects[..] else { panic!("{effects:?}") };
+    let pushed_px = scene.pointing.position.separation(&here()) / model.instrument.pixel_scale();
+    assert!((pushed_px - 8.0).abs() < 0.1, "{pushed_px}");
+    let nudge = model.nudge;
+    let _ = update(&mut model, told(believed(here(), Motion::Tracking, 2.0)));
+    assert_eq!(model.nudge, nudge, "a new position keeps it");
+    let _ = press(&mut model, "S");
+    let synced = Event::Mount(
+        Box::new(believed(here(), Motion::Tracking, 3.0)),
+        vec![Report::Synced { reply: "M31 EX GAL".into() }],
+    );
+    let _ = update(&mut model, synced);
+    assert!(!model.nudged());
+}
+
+#[test]
+fn opposite_nudges_cancel() {
+    let mut model = tracking();
+    for arrow in [Arrow::Left, Arrow::Up, Arrow::Right, Arrow::Down] {
+        let _ = update(&mut model, Event::Key(Key::Shifted(arrow)));
+    }
+    assert!(model.nudge.east.to_arcseconds().hypot(model.nudge.north.to_arcseconds()) < 1e-3, "{:?}", model.nudge);
+}
+
+#[test]
+fn a_movement_of_less_than_half_a_pixel_is_not_drawn() {
+    for (pixels, drawn) in [(0.4, false), (0.6, true)] {
+        let mut model = tracking();
+        let step = model.instrument.pixel_scale() * pixels;
+        let _ = update(&mut model, clocks(EVENING, 1.2));
+        let moved = Equatorial::new(here().ra(), here().dec() + step);
+        let effects = update(&mut model, told(believed(moved, Motion::Tracking, 1.2)));
+        assert_eq!(!effects.is_empty(), drawn, "{pixels} px: {effects:?}");
+    }
+}
+
+#[test]
+fn a_lost_and_found_line_resumes_no_slew() {
+    let mut model = tracking();
+    let mut effects = press(&mut model, "\n");
+    assert_eq!(orders(&effects).len(), 1);
+    effects = update(&mut model, Event::Mount(Box::default(), vec![Report::Resynchronised]));
+    let back = Report::Connected { product: "LX2001".into(), firmware: None };
+    let belief = believed(here(), Motion::Tracking, 2.0);
+    effects.extend(update(&mut model, Event::Mount(Box::new(belief), vec![back, Report::Position])));
+    assert!(orders(&effects).is_empty(), "{effects:?}");
+}
+
+#[test]
+fn the_hand_controller_driving_into_the_sun_is_stopped_with_an_alarm() {
+    let noon = "2026-11-22T11:30:00Z";
+    let sun = sun::apparent(&Moment::at(Utc::from_rfc3339(noon).unwrap()));
+    let mut model = Model::new(opening());
+    let mut effects = Vec::new();
+    for step in 0..12 {
+        let seconds = 1.0 + f64::from(step) * 0.25;
+        let position = Equatorial::new(sun.ra(), sun.dec() + Angle::degrees(50.0 - 2.0 * f64::from(step)));
+        let _ = update(&mut model, clocks(noon, seconds));
+        effects.extend(update(&mut model, told(believed(position, Motion::Slewing, seconds))));
+    }
+    assert!(orders(&effects).contains(&&Order::Stop), "{effects:?}");
+    assert_eq!(model.banner.unwrap().weight, Weight::Alarm);
+}
+
+#[test]
+fn quitting_in_a_slew_stops_it_first() {
+    let mut model = tracking();
+    model.belief.slewing_to = Some(here());
+    let effects = press(&mut model, "q");
+    assert!(
+        matches!(effects[..], [Effect::Dark, Effect::Order(Order::Stop), Effect::Keep(..), Effect::Quit, ..]),
+        "{effects:?}"
+    );
+}
+
+#[test]
+fn a_far_away_sync_is_refused_as_a_mistake() {
+    let mut model = tracking();
+    model.target = Some(object("far", Equatorial::new(Angle::degrees(11.0), Angle::degrees(70.0))));
+    assert!(orders(&press(&mut model, "S")).is_empty());
+    model.target = Some(m31());
+    assert!(matches!(orders(&press(&mut model, "S"))[..], [Order::Sync(_)]));
+}
+
+fn any_key() -> impl Strategy<Value = Key> {
+    let arrow = prop_oneof![Just(Arrow::Up), Just(Arrow::Down), Just(Arrow::Left), Just(Arrow::Right)];
+    prop_oneof![
+        any::<char>().prop_map(Key::Char),
+        prop::char::range(' ', '~').prop_map(Key::Char),
+        prop::char::range('a', 'z').prop_map(Key::Ctrl),
+        arrow.clone().prop_map(Key::Arrow),
+        arrow.prop_map(Key::Shifted),
+        prop_oneof![Just(Key::Enter), Just(Key::Esc), Just(Key::Backspace), Just(Key::Tab), Just(Key::PageDown)],
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is typed: without a site there is no go-to, a stop key stops, and nothing panics.
+    #[test]
+    fn no_keys_in_any_order_move_a_telescope_of_unknown_place(keys in prop::collection::vec(any_key(), 0..60)) {
+        let mut model = Model::new(Opening { site: None, ..opening() });
+        let _ = update(&mut model, clocks(EVENING, 1.0));
+        let _ = update(&mut model, told(believed(here(), Motion::Tracking, 1.0)));
+        model.target = Some(m31());
+        for key in keys {
+            let effects = update(&mut model, Event::Key(key));
+            prop_assert!(!orders(&effects).iter().any(|order| matches!(order, Order::Goto(_))), "{:?}", effects);
+        }
+        let effects = update(&mut model, Event::Key(Key::Ctrl('x')));
+        prop_assert_eq!(orders(&effects), [&Order::Stop]);
+    }
+}
