@@ -1,6 +1,6 @@
 //! The screens as a person sees them: text snapshots, and the promise that every cell is red on black.
 
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::sync::Arc;
 use std::time::Duration;
