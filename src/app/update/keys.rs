@@ -8,6 +8,7 @@ use crate::app::log::{KEPT, Weight};
 use crate::app::model::{Model, Screen};
 use crate::app::search::Search;
 use crate::hw::mount::order::Order;
+use crate::safety::Acknowledgement;
 use crate::sky::catalogue::Catalogue;
 use crate::sky::field::FieldOfView;
 
@@ -37,6 +38,12 @@ pub(super) fn pressed(model: &mut Model, key: Key) -> Vec<Effect> {
 
 /// A key that belongs to the search box.
 fn typed(model: &mut Model, key: Key) -> Vec<Effect> {
+    if key == Key::Enter
+        && let Ok(words) = Acknowledgement::typed(&model.search.text)
+    {
+        acknowledged(model, words);
+        return Vec::new();
+    }
     match key {
         Key::Char(c) => model.search.typed(c),
         Key::Backspace if model.search.text.is_empty() => model.show(Screen::Sky),
@@ -58,6 +65,19 @@ fn typed(model: &mut Model, key: Key) -> Vec<Effect> {
         _ => {}
     }
     Vec::new()
+}
+
+/// The words that let the settings weaken the Sun rule for this session.
+fn acknowledged(model: &mut Model, words: Acknowledgement) {
+    model.acknowledged = Some(words);
+    model.show(Screen::Sky);
+    let rules = model.opening.rules;
+    if rules.weakened() {
+        let text = format!("until the session ends the Sun rule is your own: {}° from the Sun", rules.sun_cone_deg);
+        model.say(Weight::Warning, &text, "cover the finder, and look at the filter once more");
+    } else {
+        model.note("noted; the settings ask for no weaker Sun rule than the default, so nothing changes");
+    }
 }
 
 fn done(model: &mut Model, action: Action) -> Vec<Effect> {

@@ -15,6 +15,8 @@ pub(super) struct Guarded {
     /// Whether starting one failed on this opening: it is not tried again, nor told again.
     given_up: bool,
     beaten_at: Duration,
+    /// What it heard last.
+    moving: bool,
 }
 
 impl Guarded {
@@ -28,17 +30,18 @@ impl Guarded {
         if self.guard.is_none() && !self.given_up {
             let line = pump.duplicate_line()?;
             match Supervisor::of_this_program().and_then(|supervisor| supervisor.guard(line)) {
-                Ok(guard) => self.guard = Some(guard),
+                Ok(guard) => (self.guard, self.moving) = (Some(guard), false),
                 Err(error) => {
                     self.given_up = true;
                     return Some(error.to_string());
                 }
             }
         }
-        if alive && now.saturating_sub(self.beaten_at) >= BEAT {
-            self.beaten_at = now;
-            let belief = pump.driver().belief();
-            let moving = belief.slewing_by_order() || belief.moving_by_order || belief.stopping;
+        let belief = pump.driver().belief();
+        let moving = belief.slewing_by_order() || belief.moving_by_order || belief.stopping;
+        // A motion that begins is told at once: the supervisor must know of it before anything can happen to us.
+        if alive && (moving != self.moving || now.saturating_sub(self.beaten_at) >= BEAT) {
+            (self.beaten_at, self.moving) = (now, moving);
             if let Some(guard) = &mut self.guard
                 && let Err(error) = guard.beat(moving)
             {
