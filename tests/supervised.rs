@@ -62,7 +62,8 @@ fn relay(mount: &str) -> (String, Arc<Mutex<Vec<u8>>>, thread::JoinHandle<()>) {
     let sent = Arc::clone(&heard);
     let thread = thread::spawn(move || {
         let (client, _) = listener.accept().expect("the session");
-        let (mut down_in, mut down_out) = (upstream.try_clone().expect("a duplicate"), client.try_clone().expect("a duplicate"));
+        let (mut down_in, mut down_out) =
+            (upstream.try_clone().expect("a duplicate"), client.try_clone().expect("a duplicate"));
         let back = thread::spawn(move || drop(std::io::copy(&mut down_in, &mut down_out)));
         let (mut client, mut up, mut chunk) = (client, upstream, [0; 256]);
         while let Ok(count @ 1..) = client.read(&mut chunk) {
@@ -107,7 +108,16 @@ fn slew_interrupted_by(signal: Signal) {
     let (_mount, address) = mount();
     let (relayed, heard, thread) = relay(&address);
     let session = scotopic(&["observe", "--headless", "--for", "600", "--site", "60.17,24.94,30"])
-        .args(["--time", "2026-11-22T22:00:00Z", "--mount", &format!("tcp:{relayed}"), "--goto", "Vega", "--goto", "Procyon"])
+        .args([
+            "--time",
+            "2026-11-22T22:00:00Z",
+            "--mount",
+            &format!("tcp:{relayed}"),
+            "--goto",
+            "Vega",
+            "--goto",
+            "Procyon",
+        ])
         .stdout(Stdio::null())
         .spawn()
         .expect("a session");

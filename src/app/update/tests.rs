@@ -325,3 +325,16 @@ proptest! {
         prop_assert_eq!(orders(&effects), [&Order::Stop]);
     }
 }
+
+#[test]
+fn a_weaker_sun_rule_holds_only_after_the_words_were_typed_where_names_are_typed() {
+    let rules = Rules { sun_cone_deg: 5.0, ..Rules::default() };
+    let mut model = Model::new(Opening { rules, ..opening() });
+    let _ = update(&mut model, clocks(EVENING, 1.0));
+    let _ = press(&mut model, "/certified solar filter\n");
+    assert_eq!(model.acknowledged, None);
+    let effects = press(&mut model, " fitted\n");
+    assert!(model.acknowledged.is_some() && orders(&effects).is_empty());
+    assert_eq!(model.view.screen, Screen::Sky);
+    assert!(model.banner.as_ref().is_some_and(|banner| banner.text.contains("5° from the Sun")), "{:?}", model.banner);
+}
