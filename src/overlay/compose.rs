@@ -86,6 +86,9 @@ impl Composer {
 
         // The words, each keeping the place of those before it.
         let mut taken = Vec::new();
+        if style.uncertainty && view.beside.is_none() {
+            taken.extend(self.uncertainty(&mut picture, field, style, &visible));
+        }
         if style.information {
             taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, &visible));
             taken.extend(self.compass(&mut picture, &mut ink, field, style, &view, &visible));
@@ -148,8 +151,9 @@ impl Composer {
         let own = outlines.iter().find(|(object, _)| is_target(object)).map(|(_, outline)| outline);
         if let (Some((x, y)), Some(outline)) = (middle, own) {
             outline.draw(ink, 1.8);
-            if outline.minor_radius() > field.height_px as f64 / 2.0 {
-                outline.draw_axis(ink, 40.0, (field.width_px + field.height_px) as f64);
+            if outline.minor_radius() > field.height_px as f64 / 2.0 && outline.radius() > 1.1 * outline.minor_radius()
+            {
+                outline.draw_axis(ink, 34.0, 190.0);
             }
             if outline.minor_radius() < 14.0 {
                 marks::reticle(ink, x, y, outline.radius() + 8.0);
@@ -195,6 +199,31 @@ impl Composer {
             lay_text(picture, &line.text, line.left, line.top, red);
         }
         lines.iter().map(Line::area).collect()
+    }
+
+    /// How uncertain the position is, written under its circle; the box.
+    fn uncertainty(
+        &mut self,
+        picture: &mut Picture,
+        field: &FieldOfView,
+        style: &Style,
+        visible: &Region,
+    ) -> Option<Area> {
+        let arcmin = field.uncertainty.to_arcminutes();
+        let words = if arcmin < 0.95 {
+            format!("±{:.0}″", arcmin * 60.0)
+        } else {
+            format!("±{arcmin:.1}′").replace(".0′", "′")
+        };
+        let em_px = (layout::text_px(field, style) * 0.8).max(13.0);
+        let text = self.scribe.write(&words, Weight::Bold, em_px);
+        let below = field.height_px as f64 / 2.0 + field.projection.pixels(field.uncertainty);
+        let line = Line::centred(text, field.width_px as f64 / 2.0, below);
+        let seen = arcmin > 0.0 && visible.contains_box(&line.area());
+        seen.then(|| {
+            lay_text(picture, &line.text, line.left, line.top, RED.map(|channel| channel * style.marks));
+            line.area()
+        })
     }
 
     /// North and east at the lower left, a bar of the sky's scale at the lower right; their boxes.
@@ -310,7 +339,7 @@ fn names(
     for (object, outline) in outlines {
         let is_target = target.is_some_and(|target| target.name == object.name);
         // An outline that leaves the view is named at its middle.
-        let radius = if outline.radius() < 150.0 { outline.radius() } else { 16.0 };
+        let radius = if outline.radius() < 150.0 { outline.radius() } else { 30.0 };
         let magnitude = object.magnitude.map_or(16.0, |magnitude| magnitude.0);
         let rank = if is_target { f64::MIN } else { magnitude - 6.0 };
         named.push(Named { text: object.name.into(), x: outline.x, y: outline.y, radius, rank, faint: false });

@@ -20,17 +20,17 @@ pub fn place(star: &FieldStar, years: f64) -> Equatorial<J2000> {
     Equatorial::new(entry.position.ra() + east / cos_dec, entry.position.dec() + north)
 }
 
-/// Width (one sigma, pixels) of a star's point: 0.9 at magnitude 11, 2.7 at magnitude 0.
+/// Width (one sigma, pixels) of a star's point: 1.1 at magnitude 11, 2.9 at magnitude 0.
 #[must_use]
 pub fn sigma_px(v_mag: f32) -> f32 {
-    (0.75 + 0.165 * (12.0 - v_mag)).clamp(0.75, 3.0)
+    (0.95 + 0.165 * (12.0 - v_mag)).clamp(0.95, 3.2)
 }
 
-/// Light in the middle of a star's point: a third of full at magnitude 11, full at magnitude 4. The eye has the true star for
+/// Light in the middle of a star's point: half of full at magnitude 11, full at magnitude 4. The eye has the true star for
 /// its true brightness; the point is there to be matched with it.
 #[must_use]
 pub fn peak(v_mag: f32) -> f32 {
-    (0.24 + 0.095 * (12.0 - v_mag)).clamp(0.2, 1.0)
+    (0.40 + 0.075 * (12.0 - v_mag)).clamp(0.35, 1.0)
 }
 
 /// Adds a star's light around a point.
