@@ -26,6 +26,6 @@ pub mod style;
 /// Text as coverage.
 pub mod text;
 
-pub use compose::{Composer, Scene, compose};
+pub use compose::{Composer, Scene, compose, reach};
 pub use photograph::Photograph;
 pub use style::{Eye, Mode, Palette, Style};

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{Failure, answer, answer_json, photographs};
-use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Scene, Style};
+use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Scene, Style, reach};
 use crate::picture::png;
 use crate::sky::astrometry::{Astrometry, Reduction};
 use crate::sky::catalogue::{Catalogue, Object};
@@ -137,7 +137,8 @@ pub fn run(arguments: &Arguments, profile_site: Option<Site>) -> Result<(), Fail
     }
     let photographs = photographs(arguments.photographs.as_deref())?;
     let faintest = instrument.limiting_magnitude(eye.pupil_mm, eye.sky);
-    let found = catalogue.within(&field.centre(), field.radius(), Magnitude(faintest.0.max(11.0)));
+    let found =
+        catalogue.within(&field.centre(), reach(&field, &style, target.as_ref()), Magnitude(faintest.0.max(11.0)));
     let scene = Scene { found: &found, target: target.as_ref(), photographs: &photographs, catalogue };
     let picture = Composer::default().compose(&scene, &field, &eye, &style);
     write(&arguments.out, &png::encode(&picture).map_err(Failure::failed)?)?;

@@ -17,6 +17,9 @@ pub mod geometry;
 mod ioctl;
 /// Pictures kept in memory, for tests and previews.
 pub mod memory;
+/// A window on a monitor.
+#[cfg(feature = "window")]
+pub mod window;
 
 pub use geometry::Flip;
 pub use memory::{Memory, Nowhere};
@@ -150,6 +153,9 @@ pub fn open(address: &ProjectorAddress, flip: Flip) -> Result<Box<dyn Projector>
         ProjectorAddress::None => Box::new(Nowhere),
         ProjectorAddress::Framebuffer(path) => Box::new(framebuffer::Framebuffer::open(path, flip)?),
         ProjectorAddress::Folder(path) => Box::new(folder::Folder::open(path, flip)?),
+        #[cfg(feature = "window")]
+        ProjectorAddress::Window(monitor) => Box::new(window::Window::open(monitor.as_deref(), flip)?),
+        #[cfg(not(feature = "window"))]
         ProjectorAddress::Window(_) => return Err(ProjectorError::NoWindows),
     })
 }

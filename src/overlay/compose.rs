@@ -12,6 +12,7 @@ use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
 use crate::sky::field::FieldOfView;
 use crate::sky::project::Projection;
+use crate::units::Angle;
 
 /// The only colour of text and marks: the red primary.
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -344,7 +345,9 @@ fn names(
         let rank = if is_target { f64::MIN } else { magnitude - 6.0 };
         named.push(Named { text: object.name.into(), x: outline.x, y: outline.y, radius, rank, faint: false });
     }
-    let mut unnamed = 0;
+    // In a picture made much smaller the numbers would hide the stars.
+    let crowded = view.beside.is_some_and(|beside| beside.factor < 0.5);
+    let mut unnamed = if crowded { MAGNITUDES } else { 0 };
     let mut by_light: Vec<&FieldStar> = scene.found.stars.iter().collect();
     by_light.sort_by(|a, b| a.v_mag.total_cmp(&b.v_mag));
     for star in by_light.into_iter().take(4 * MOST_NAMES) {
@@ -369,6 +372,19 @@ fn names(
     named
 }
 
+/// How far from the middle of the field a catalogue must be asked, so that nothing is missing in the picture: in mode beside a
+/// picture made smaller shows more sky than the eyepiece.
+#[must_use]
+pub fn reach(field: &FieldOfView, style: &Style, target: Option<&Object>) -> Angle {
+    let visible = Region::new(field.width_px, field.height_px, vec![eyepiece_disc(field)]);
+    match view(field, style, target, &visible).beside {
+        Some(beside) => {
+            field.radius().max(field.projection.scale() * (beside.window.radius / beside.factor + field.circle_px()))
+        }
+        None => field.radius(),
+    }
+}
+
 /// The eyepiece's circle on the canvas.
 fn eyepiece_disc(field: &FieldOfView) -> Disc {
     Disc { x: field.width_px as f64 / 2.0, y: field.height_px as f64 / 2.0, radius: field.circle_px() }
@@ -387,7 +403,7 @@ fn view(field: &FieldOfView, style: &Style, target: Option<&Object>, visible: &R
         .unwrap_or(middle);
     let radius = target
         .and_then(|target| target.axes_arcmin)
-        .map_or(0.0, |(major, _)| field.projection.pixels(crate::units::Angle::arcminutes(major)) / 2.0);
+        .map_or(0.0, |(major, _)| field.projection.pixels(Angle::arcminutes(major)) / 2.0);
     let beside = layout::beside(field, x, y, radius);
     let region = Region::new(field.width_px, field.height_px, vec![eyepiece_disc(field), beside.window]);
     View { projection: beside.projection, region, beside: Some(beside) }
@@ -435,4 +451,90 @@ fn standing_out(scene: &Scene, field: &FieldOfView) -> Option<Object> {
     let named = stars.filter(|star| scene.catalogue.star_name(star.id).is_some());
     let brightest = named.min_by(|a, b| a.v_mag.total_cmp(&b.v_mag))?;
     scene.catalogue.star(brightest.id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::coords::Equatorial;
+    use crate::sky::optics::Instrument;
+
+    fn ring() -> Object {
+        Catalogue::embedded().search("M57").unwrap()
+    }
+
+    fn field_at(object: &Object, eyepiece_mm: f64) -> FieldOfView {
+        let instrument = Instrument::default().with_eyepiece(eyepiece_mm);
+        FieldOfView::towards(&object.astrometry.position, Angle::degrees(30.0), &instrument)
+    }
+
+    fn composed(field: &FieldOfView, style: &Style) -> Picture {
+        let catalogue = Catalogue::embedded();
+        let target = ring();
+        let found =
+            catalogue.within(&field.centre(), reach(field, style, Some(&target)), crate::units::Magnitude(11.0));
+        let scene = Scene { found: &found, target: Some(&target), photographs: &[], catalogue };
+        compose(&scene, field, &Eye::default(), style)
+    }
+
+    #[test]
+    fn while_it_slews_with_a_stale_position_or_switched_off_the_picture_is_exactly_black() {
+        let field = field_at(&ring(), 24.0);
+        assert!(!composed(&field, &Style::default()).is_black());
+        assert!(composed(&FieldOfView { may_draw: false, ..field.clone() }, &Style::default()).is_black());
+        assert!(composed(&field, &Style { mode: Mode::Off, ..Style::default() }).is_black());
+        assert!(composed(&field, &Style { gain: 0.0, ..Style::default() }).is_black());
+    }
+
+    #[test]
+    fn no_pixel_is_brighter_than_the_ceiling_and_the_red_palette_is_red_only() {
+        let style = Style { ceiling: 0.2, palette: super::super::Palette::Red, ..Style::default() };
+        for mode in [Mode::Over, Mode::Beside] {
+            let picture = composed(&field_at(&ring(), 24.0), &Style { mode, ..style.clone() });
+            assert!(picture.pixels().iter().all(|[r, g, b]| *r <= 0.2 && *g == 0.0 && *b == 0.0));
+        }
+    }
+
+    #[test]
+    fn nothing_is_drawn_outside_the_eyepieces_circle() {
+        let field = field_at(&ring(), 10.0);
+        let picture = composed(&field, &Style::default());
+        let radius = field.circle_px();
+        for (index, pixel) in picture.pixels().iter().enumerate() {
+            let (x, y) = ((index % 1024) as f64 + 0.5 - 512.0, (index / 1024) as f64 + 0.5 - 384.0);
+            assert!(x.hypot(y) <= radius + 1.0 || *pixel == [0.0; 3], "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn the_middle_of_the_target_stays_free() {
+        let picture = composed(&field_at(&ring(), 24.0), &Style::default());
+        for y in 374..394 {
+            assert!(picture.row(y)[502..522].iter().all(|pixel| *pixel == [0.0; 3]), "row {y}");
+        }
+    }
+
+    #[test]
+    fn the_ring_nebulas_outline_has_its_true_size() {
+        let target = ring();
+        let field = field_at(&target, 24.0);
+        let style = Style { labels: false, information: false, uncertainty: false, ..Style::default() };
+        let picture = composed(&field, &style);
+        let (major, _) = target.axes_arcmin.unwrap();
+        // Along the canvas' row through the middle the rim is at half an axis: 1.27 arcminutes are 33.7 pixels.
+        let radius = field.projection.pixels(Angle::arcminutes(major)) / 2.0;
+        let row = picture.row(384);
+        let lit: Vec<usize> = (545..600).filter(|&x| row[x][0] > 0.3).collect();
+        assert!(lit.iter().any(|&x| (x as f64 + 0.5 - 512.0 - radius).abs() <= 1.0), "{radius}: {lit:?}");
+    }
+
+    #[test]
+    fn an_empty_field_names_its_position() {
+        let position = Equatorial::new(Angle::degrees(185.0), Angle::degrees(30.0));
+        let field = FieldOfView::towards(&position, Angle::ZERO, &Instrument::default());
+        let scene =
+            Scene { found: &Found::default(), target: None, photographs: &[], catalogue: Catalogue::embedded() };
+        let picture = compose(&scene, &field, &Eye::default(), &Style::default());
+        assert!(picture.row(30).iter().any(|pixel| pixel[0] > 0.3));
+    }
 }

@@ -113,8 +113,9 @@ pub fn beside(field: &FieldOfView, x: f64, y: f64, radius: f64) -> Beside {
     const GAP: f64 = 16.0;
     let (middle_x, middle_y) = (field.width_px as f64 / 2.0, field.height_px as f64 / 2.0);
     let visible = middle_x.min(field.circle_px()) - 4.0;
-    // The side of the middle on which there is more room.
-    let side = if x <= middle_x { 1.0 } else { -1.0 };
+    // The side of the middle on which there is more room; about the middle always the right, so that it does not change
+    // sides from frame to frame.
+    let side = if x <= middle_x + 40.0 { 1.0 } else { -1.0 };
     let room = visible - side * (x - middle_x);
 
     let radius = radius.max(60.0);

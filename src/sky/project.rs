@@ -16,7 +16,7 @@ use crate::units::Angle;
 /// `diag(-1, 1)` is the plain view, north up and east left; `diag(+1, 1)` the mirrored one. Rot is counter-clockwise as the
 /// observer sees it, so theta is where north stands. Canvas x runs right and y down; pixel (i, j) covers
 /// `i..i+1, j..j+1`. The model is that of astrometric WCS (Calabretta and Greisen 2002, A&A 395, 1077, section 5.1.3);
-/// astropy's WCS agrees to 1e-6 px (`fixtures/reference/wcs_tan.csv`).
+/// astropy's WCS agrees to a milliarcsecond (`fixtures/reference/wcs_tan.csv`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
     /// Rows: unit vectors east, north and centre, in the equatorial frame.

@@ -257,3 +257,82 @@ impl Stretch {
         if light.is_finite() { light } else { 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::png;
+
+    const BESIDE: &str = "ra_deg = 10.0\ndec_deg = 40.0\nscale_arcsec_px = 2.0\n";
+
+    fn grey(width: usize, height: usize) -> Vec<u8> {
+        png::encode(&Picture::black(width, height)).unwrap()
+    }
+
+    /// Where a place in a photograph of 100 x 60 pixels is, in arcseconds east and north of its middle.
+    fn offset(beside: &str, x: f64, y: f64) -> (i64, i64) {
+        let photograph = Photograph::from_image("test", &grey(100, 60), beside).unwrap();
+        let plane = photograph.plate.matrix * (DVec2::new(x, y) - photograph.plate.reference);
+        let arcsec = |radians: f64| (radians.to_degrees() * 3600.0).round() as i64;
+        (arcsec(plane.x), arcsec(plane.y))
+    }
+
+    #[test]
+    fn the_file_beside_says_which_way_up() {
+        assert_eq!(offset(BESIDE, 50.0, 30.0), (0, 0));
+        assert_eq!(offset(BESIDE, 50.0, 20.0), (0, 20), "its top is north");
+        assert_eq!(offset(BESIDE, 40.0, 30.0), (20, 0), "its left is east");
+        let turned = format!("{BESIDE}angle_deg = 90.0\n");
+        assert_eq!(offset(&turned, 50.0, 20.0), (20, 0), "its top is east");
+        assert_eq!(offset(&turned, 40.0, 30.0), (0, -20), "its left is south");
+        let flipped = format!("{BESIDE}flipped = true\n");
+        assert_eq!(offset(&flipped, 50.0, 20.0), (0, 20));
+        assert_eq!(offset(&flipped, 40.0, 30.0), (-20, 0), "its left is west");
+    }
+
+    #[test]
+    fn bad_photographs_are_sentences() {
+        let cut = &grey(100, 60)[..60];
+        let error = Photograph::from_image("cut", cut, BESIDE).unwrap_err();
+        assert!(matches!(error, PhotographError::Image(_)), "{error}");
+
+        // The same file with 100000 pixels a side in its header, its checksum mended.
+        let mut wide = grey(100, 60);
+        wide[16..24].copy_from_slice(&[0, 1, 0x86, 0xA0, 0, 1, 0x86, 0xA0]);
+        let checksum = crc32(&wide[12..29]).to_be_bytes();
+        wide[29..33].copy_from_slice(&checksum);
+        let error = Photograph::from_image("wide", &wide, BESIDE).unwrap_err();
+        assert_eq!(error, PhotographError::Size { width: 100_000, height: 100_000 });
+
+        for beside in ["ra_deg = 10.0", "ra_deg = 400.0\ndec_deg = 0.0\nscale_arcsec_px = 1.0", "ra = 1"] {
+            let error = Photograph::from_image("beside", &grey(4, 4), beside).unwrap_err();
+            assert!(matches!(error, PhotographError::Beside(_)), "{error}");
+        }
+        assert!(matches!(Photograph::from_fits("none", b"SIMPLE"), Err(PhotographError::Fits(FitsError::NotFits))));
+    }
+
+    /// CRC-32 of PNG's chunks (ISO 3309).
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0, |crc, &byte| {
+            (0..8).fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xEDB8_8320 } else { crc >> 1 })
+        })
+    }
+
+    #[test]
+    fn nan_pixels_are_black_and_the_brightest_are_white() {
+        let mut values: Vec<f32> = (0..1000u16).map(f32::from).collect();
+        values.extend([f32::NAN, f32::INFINITY]);
+        let mut text = String::new();
+        for card in ["SIMPLE  = T", "BITPIX  = -32", "NAXIS   = 2", "NAXIS1  = 501", "NAXIS2  = 2", "END"] {
+            text += &format!("{card:<80}");
+        }
+        let mut bytes = text.into_bytes();
+        bytes.resize(2880, b' ');
+        bytes.extend(values.iter().flat_map(|value| value.to_be_bytes()));
+        let fits = Fits::read(&bytes).unwrap();
+        let stretch = Stretch::of(&fits);
+        assert_eq!((stretch.light(f32::NAN), stretch.light(100.0)), (0.0, 0.0));
+        assert!((stretch.light(999.0) - 1.0).abs() < 1e-6 && stretch.light(f32::INFINITY) == 1.0);
+        assert!(stretch.light(400.0) < stretch.light(500.0));
+    }
+}

@@ -64,3 +64,54 @@ fn matrix_deg(fits: &Fits) -> Result<DMat2, PhotographError> {
     };
     Ok(DMat2::from_diagonal(DVec2::new(east, north)) * pc)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A FITS file of one pixel with these cards.
+    fn file(cards: &[(&str, &str)]) -> Vec<u8> {
+        let mut text = format!("{:<80}", "SIMPLE  =                    T");
+        let fixed = [("BITPIX", "8"), ("NAXIS", "2"), ("NAXIS1", "1"), ("NAXIS2", "1")];
+        for (key, value) in fixed.iter().chain(cards) {
+            text += &format!("{:<80}", format!("{key:<8}= {value}"));
+        }
+        text += &format!("{:<80}", "END");
+        let mut bytes = text.into_bytes();
+        bytes.resize(bytes.len().div_ceil(2880) * 2880, b' ');
+        bytes.push(0);
+        bytes
+    }
+
+    const TAN: [(&str, &str); 2] = [("CTYPE1", "'RA---TAN'"), ("CTYPE2", "'DEC--TAN'")];
+
+    #[test]
+    fn pixels_are_on_the_sky_where_astropy_has_them_within_a_milliarcsecond() {
+        let table = include_str!("../../../fixtures/reference/wcs_tan.csv");
+        let rows: Vec<&str> =
+            table.lines().filter(|line| !line.starts_with('#') && !line.starts_with("case")).collect();
+        assert_eq!(rows.len(), 16);
+        for row in rows {
+            let columns: Vec<&str> = row.split(',').collect();
+            let number = |i: usize| -> f64 { columns[i].parse().unwrap() };
+            let cards: Vec<(&str, &str)> = columns[1].split(' ').map(|card| card.split_once('=').unwrap()).collect();
+            let plate = plate(&Fits::read(&file(&[&TAN[..], &cards].concat())).unwrap()).unwrap();
+            let here = plate.position(number(2) - 0.5, number(3) - 0.5);
+            let astropys = Equatorial::new(Angle::degrees(number(4)), Angle::degrees(number(5)));
+            assert!(here.separation(&astropys).to_arcseconds() < 1e-3, "{row}");
+        }
+    }
+
+    #[test]
+    fn headers_that_are_not_understood_are_refused_with_the_card() {
+        let place = [("CRVAL1", "10.0"), ("CRVAL2", "41.0"), ("CRPIX1", "1.0"), ("CRPIX2", "1.0")];
+        let scale = [("CDELT1", "-1e-4"), ("CDELT2", "1e-4")];
+        let read = |cards: &[(&str, &str)]| plate(&Fits::read(&file(cards)).unwrap());
+        assert!(read(&[&TAN[..], &place, &scale].concat()).is_ok());
+        assert_eq!(read(&TAN), Err(PhotographError::NoWcs("CDELT1")));
+        let sin = read(&[("CTYPE1", "'RA---SIN'"), ("CTYPE2", "'DEC--SIN'")]);
+        assert!(sin.unwrap_err().to_string().contains("RA---SIN"));
+        let flat = [("CDELT1", "0.0"), ("CDELT2", "1e-4")];
+        assert_eq!(read(&[&TAN[..], &place, &flat].concat()), Err(PhotographError::Scale(0.0)));
+    }
+}
