@@ -69,6 +69,8 @@ pub(super) struct Wire {
     probe: Probe,
     probes: u32,
     most_probes: u32,
+    /// How long the last probe took to be answered: a slow bridge is waited for longer.
+    latency: Duration,
     /// Bytes that came unasked.
     pub(super) stray: u64,
 }
@@ -83,6 +85,7 @@ impl Wire {
             probe: Probe::Ack,
             probes: 0,
             most_probes: 4,
+            latency: Duration::ZERO,
             stray: 0,
         }
     }
@@ -202,7 +205,7 @@ impl Wire {
                 *bytes += 1;
                 self.stray += 1;
             }
-            State::Probing { framer, last, good, extra, .. } => {
+            State::Probing { framer, sent, last, good, extra } => {
                 *last = Some(now);
                 if *good {
                     *extra = true;
@@ -212,12 +215,13 @@ impl Wire {
                     return; // busy, but there: the probe is sent again
                 }
                 let command = if self.probe == Probe::Ack { Command::Ack } else { Command::Ra };
-                if !framer.begun() && (byte == 0x06 || byte == b':') {
-                    self.outcomes.push(Outcome::Dead(Fault::Looped));
-                    self.state = State::Idle;
-                } else if framer.push(byte) != Step::More {
+                if framer.push(byte) != Step::More {
                     if reply::parse(&command, framer.reply()).is_some() {
                         *good = true;
+                        self.latency = now.saturating_sub(*sent);
+                    } else if framer.reply() == command.bytes() {
+                        self.outcomes.push(Outcome::Dead(Fault::Looped));
+                        self.state = State::Idle;
                     } else {
                         *extra = true;
                         *framer = Framer::new(command.shape());
@@ -226,11 +230,6 @@ impl Wire {
             }
             State::Waiting { command, framer, naks, last, pushed, .. } => {
                 *last = Some(now);
-                if !framer.begun() && (byte == b':' || byte == 0x06) {
-                    self.outcomes.push(Outcome::Dead(Fault::Looped));
-                    self.state = State::Idle;
-                    return;
-                }
                 match framer.push(byte) {
                     Step::More => {}
                     Step::Nak => {
@@ -252,6 +251,11 @@ impl Wire {
     }
 
     fn whole(&mut self, command: Command, bytes: &[u8], pushed: bool, now: Duration) {
+        if bytes == command.bytes() {
+            self.outcomes.push(Outcome::Dead(Fault::Looped));
+            self.state = State::Idle;
+            return;
+        }
         let Some(reply) = reply::parse(&command, bytes) else {
             let fault = Fault::Garbled { command: command.name(), got: printable(bytes) };
             self.fail(command, fault, now);
@@ -342,6 +346,11 @@ impl Wire {
         if self.probes > 1 { LONG_QUIET } else { QUIET }
     }
 
+    /// Twice what the probe took, where that is more than is usual on such a line.
+    fn first_byte(&self) -> Duration {
+        self.timing.first_byte.max(self.latency * 2)
+    }
+
     /// When [`Wire::tick`] has something to do.
     pub(super) fn wake_at(&self) -> Duration {
         match &self.state {
@@ -351,12 +360,12 @@ impl Wire {
                 Some(_) if command_is_slow(command, framer) => *sent + command.patience(),
                 Some(last) => *last + self.timing.next_byte,
                 None if *command == Command::Sync && !pushed => *sent + PUSH_SYNC,
-                None => *sent + self.timing.first_byte.max(command.patience()),
+                None => *sent + self.first_byte().max(command.patience()),
             },
             State::Draining { since, last, .. } => (*last + self.quiet()).min(*since + BABBLE),
             State::Probing { sent, last, good, .. } => match last {
                 Some(last) if *good => *last + self.quiet(),
-                _ => *sent + PROBE_WAIT.max(self.timing.first_byte),
+                _ => *sent + PROBE_WAIT.max(self.first_byte()),
             },
         }
     }
