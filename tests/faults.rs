@@ -108,7 +108,7 @@ fn each_fault_leaves_a_driver_that_is_right_or_says_that_it_does_not_know() {
         let (belief, name) = (session.belief(), entry.name);
         let hopeless = HOPELESS.contains(&name);
         let mut fails = |what: &str| {
-            failures.push(format!("{name}: {what}; {:?}", session.reports.iter().rev().take(6).collect::<Vec<_>>()))
+            failures.push(format!("{name}: {what}; {:?}", session.reports.iter().rev().take(6).collect::<Vec<_>>()));
         };
         if !hopeless && !matches!(belief.link, LinkState::Ready | LinkState::Mending | LinkState::Connecting) {
             fails(&format!("the link is {:?}", belief.link));
