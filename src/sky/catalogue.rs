@@ -26,6 +26,9 @@ mod stars;
 /// The sky cut into square degrees.
 mod tiles;
 
+#[cfg(test)]
+mod tests;
+
 pub use kind::Kind;
 pub use object::{Band, FieldObject, FieldStar, Found, Object, StarId};
 

@@ -1,6 +1,6 @@
 //! Packs OpenNGC: one line an object, its names first.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::{PackError, Packed, Sources, Table};
 use crate::sky::catalogue::constellation;
@@ -48,6 +48,10 @@ const BY_HAND: [(&str, &str); 38] = [
     ("NGC0292", "SMC"),
 ];
 
+/// Places that OpenNGC has wrong by more than an arcsecond where a point can be named, by OpenNGC's own name, in degrees at
+/// J2000. M57: its central star, 18h53m35.08s +33d01m45.0s; OpenNGC's place is 2.3 arcseconds from it.
+const PLACES: [(&str, &str, &str); 1] = [("NGC6720", "283.396167", "33.029167")];
+
 /// Packs `openngc.tsv`.
 pub(super) fn pack(sources: &Sources<'_>, packed: &mut Packed) -> Result<(), PackError> {
     let lists = lists(sources.lists)?;
@@ -63,6 +67,7 @@ pub(super) fn pack(sources: &Sources<'_>, packed: &mut Packed) -> Result<(), Pac
         "# From OpenNGC by Mattia Verga (https://github.com/mattiaverga/OpenNGC), CC-BY-SA-4.0; this file is under that licence.\n\
          # names\tlists\ttype\tra_deg\tdec_deg\tconstellation\tmajor_arcmin\tminor_arcmin\tposition_angle_deg\tB\tV\thubble\n",
     );
+    let rows: HashSet<&str> = Table::new("openngc.csv", ';', sources.openngc).map(|row| row.text(name)).collect();
     let (mut objects, mut listed) = (0, 0);
     for row in table {
         for column in [ra, dec] {
@@ -72,7 +77,17 @@ pub(super) fn pack(sources: &Sources<'_>, packed: &mut Packed) -> Result<(), Pac
             row.number(column)?;
         }
         let own = row.text(name);
-        let member = lists.get(own).map_or("", String::as_str);
+        // A number of the lists that OpenNGC has only as another name of a row (NGC 2244 is its NGC 2239) counts for that row.
+        let numbers = |column, catalogue: &'static str| {
+            let numbers = row.text(column).split(',').filter(|number| !number.is_empty());
+            numbers.map(move |number| format!("{catalogue}{number}"))
+        };
+        let others = numbers(ngc, "NGC").chain(numbers(ic, "IC")).filter(|other| !rows.contains(other.as_str()));
+        let members: Vec<&str> = std::iter::once(own.to_owned())
+            .chain(others)
+            .filter_map(|name| lists.get(&name))
+            .flat_map(|member| member.split_whitespace())
+            .collect();
         let mut names: Vec<String> = Vec::new();
         let mut add = |name: String| {
             if !name.is_empty() && !names.iter().any(|known| known.eq_ignore_ascii_case(&name)) {
@@ -82,32 +97,28 @@ pub(super) fn pack(sources: &Sources<'_>, packed: &mut Packed) -> Result<(), Pac
         add(Some(row.text(messier))
             .filter(|number| !number.is_empty())
             .map_or(String::new(), |n| display(&format!("M{n}"))));
-        member.split_whitespace().filter(|entry| entry.starts_with('M')).for_each(|entry| add(entry.to_owned()));
+        members.iter().filter(|entry| entry.starts_with('M')).for_each(|entry| add((*entry).to_owned()));
         add(display(own));
-        for (column, catalogue) in [(ngc, "NGC"), (ic, "IC")] {
-            row.text(column)
-                .split(',')
-                .filter(|n| !n.is_empty())
-                .for_each(|n| add(display(&format!("{catalogue}{n}"))));
-        }
-        let caldwell = |entry: &&str| entry.starts_with('C');
-        member.split_whitespace().filter(caldwell).for_each(|entry| add(entry.to_owned()));
+        numbers(ngc, "NGC").chain(numbers(ic, "IC")).for_each(|name| add(display(&name)));
+        members.iter().filter(|entry| entry.starts_with('C')).for_each(|entry| add((*entry).to_owned()));
         let by_hand = BY_HAND.iter().find(|entry| entry.0 == own).map_or("", |entry| entry.1);
         let common = row.text(common).split(',').chain(by_hand.split(';'));
         common.for_each(|name| add(name.trim().trim_start_matches("the ").to_owned()));
-        let herschel = if member.contains("H400") { "H400" } else { "" };
-        listed += usize::from(!member.is_empty());
+        let herschel = if members.contains(&"H400") { "H400" } else { "" };
+        listed += usize::from(!members.is_empty());
         let con = match row.text(con) {
             "Se1" | "Se2" => "Ser",
             other => constellation::abbreviation(other).unwrap_or(""),
         };
         let names = names.join(";");
+        let mended = PLACES.iter().find(|place| place.0 == own);
+        let (ra, dec) = mended.map_or((row.text(ra), row.text(dec)), |place| (place.1, place.2));
         let line = [
             &names,
             herschel,
             row.text(kind),
-            row.text(ra),
-            row.text(dec),
+            ra,
+            dec,
             con,
             row.text(major),
             row.text(minor),

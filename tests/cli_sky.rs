@@ -1,0 +1,161 @@
+//! `scotopic sky` as a script sees it.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn scotopic(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_scotopic"))
+        .args(arguments)
+        // No profile of the person who runs the tests.
+        .env("XDG_CONFIG_HOME", std::env::temp_dir().join("scotopic-no-such-profile"))
+        .env("HOME", std::env::temp_dir().join("scotopic-no-such-home"))
+        .output()
+        .unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = scotopic(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Row 309 of the reference: ERFA's Sirius from Helsinki.
+#[test]
+fn show_answers_with_every_key_and_erfas_numbers() {
+    let shown =
+        json(&["sky", "show", "Sirius", "--at", "1990-03-14T20:00:00Z", "--site", "60.1699,24.9384,30", "--json"]);
+    let mut keys: Vec<&String> = shown.as_object().unwrap().keys().collect();
+    keys.sort();
+    let mut wanted = [
+        "ra_j2000_deg",
+        "dec_j2000_deg",
+        "ra_apparent_deg",
+        "dec_apparent_deg",
+        "alt_deg",
+        "alt_refracted_deg",
+        "az_deg",
+        "parallactic_deg",
+        "v_mag",
+        "surface_brightness_mag_arcsec2",
+        "size_arcmin",
+        "type",
+        "constellation",
+        "names",
+    ];
+    wanted.sort_unstable();
+    assert_eq!(keys, wanted);
+    for (key, erfa) in
+        [("ra_apparent_deg", 101.183488), ("dec_apparent_deg", -16.704103), ("az_deg", 214.56462), ("alt_deg", 7.84219)]
+    {
+        let ours = shown[key].as_f64().unwrap();
+        assert!((ours - erfa).abs() < 1.0 / 3600.0, "{key}: {ours} is not {erfa}");
+    }
+    assert!((shown["alt_refracted_deg"].as_f64().unwrap() - 7.954).abs() < 0.005);
+    assert_eq!(
+        (&shown["v_mag"], &shown["type"], &shown["constellation"]),
+        (&(-1.44).into(), &"star".into(), &"CMa".into())
+    );
+    assert_eq!(shown["size_arcmin"], Value::Null);
+}
+
+#[test]
+fn without_a_site_the_horizon_is_null_and_no_error() {
+    let shown = json(&["sky", "show", "M31", "--at", "2026-11-22T20:00:00Z", "--json"]);
+    for key in ["alt_deg", "alt_refracted_deg", "az_deg", "parallactic_deg"] {
+        assert_eq!(shown[key], Value::Null, "{key}");
+    }
+    assert_eq!(shown["v_mag"], 3.44);
+    assert_eq!(shown["size_arcmin"], serde_json::json!([177.83, 69.66]));
+    assert!((shown["surface_brightness_mag_arcsec2"].as_f64().unwrap() - 22.3).abs() < 0.05);
+    assert!(shown["names"].as_array().unwrap().contains(&"Andromeda Galaxy".into()));
+}
+
+#[test]
+fn a_bare_position_and_negative_numbers_are_taken() {
+    let shown = json(&[
+        "sky",
+        "show",
+        "--ra",
+        "83.82",
+        "--dec",
+        "-5.4",
+        "--at",
+        "2026-11-22T20:00:00Z",
+        "--site",
+        "-24.6,-70.4,2635",
+        "--delta-t",
+        "-3",
+        "--json",
+    ]);
+    assert_eq!(shown["dec_j2000_deg"].as_f64().unwrap().to_string()[..4], *"-5.4");
+    assert_eq!((&shown["constellation"], &shown["type"]), (&"Ori".into(), &Value::Null));
+    assert!(shown["alt_deg"].is_f64());
+}
+
+#[test]
+fn delta_t_moves_what_it_should() {
+    let sidereal = |delta_t: &str| {
+        json(&[
+            "sky",
+            "show",
+            "Arcturus",
+            "--at",
+            "2026-11-22T20:00:00Z",
+            "--site",
+            "60,25,0",
+            "--delta-t",
+            delta_t,
+            "--json",
+        ])
+    };
+    let (a, b) = (sidereal("69"), sidereal("86469"));
+    // A day of TT is some hundredths of an arcsecond of precession and up to a third of aberration.
+    let moved = (a["dec_apparent_deg"].as_f64().unwrap() - b["dec_apparent_deg"].as_f64().unwrap()).abs() * 3600.0;
+    assert!(moved > 0.001 && moved < 1.0, "{moved}");
+}
+
+#[test]
+fn a_field_is_listed_nearest_first_with_the_promised_keys() {
+    let rows =
+        json(&["sky", "field", "--ra", "83.82", "--dec", "-5.4", "--radius-arcmin", "30", "--faintest", "9", "--json"]);
+    let rows = rows.as_array().unwrap();
+    assert!(rows.len() > 10);
+    let separations: Vec<f64> = rows.iter().map(|row| row["separation_arcmin"].as_f64().unwrap()).collect();
+    assert!(separations.is_sorted() && separations.iter().all(|separation| *separation <= 30.0));
+    for row in rows {
+        let mut keys: Vec<&String> = row.as_object().unwrap().keys().collect();
+        keys.sort();
+        assert_eq!(keys, ["dec_j2000_deg", "name", "ra_j2000_deg", "separation_arcmin", "type", "v_mag"]);
+        assert!(row["v_mag"].as_f64().is_none_or(|v| v <= 9.0));
+    }
+    assert!(rows.iter().any(|row| row["name"] == "M42"));
+}
+
+#[test]
+fn failures_are_one_sentence_and_the_exit_code_says_whose_fault_it_was() {
+    for (arguments, code, word) in [
+        (&["sky", "show", "Xyzzy"][..], 1, "Xyzzy"),
+        (&["sky", "show", "polrais", "--json"], 1, "Polaris"),
+        (&["sky", "show", "Jupiter"], 1, "moves"),
+        (&["sky", "show", "M31", "--site", "91,0,0"], 2, "91"),
+        (&["sky", "show", "M31", "--at", "tonight"], 2, "tonight"),
+        (&["sky", "show", "--ra", "10", "--dec", "95"], 2, "95"),
+        (&["sky", "show", "--ra", "NaN", "--dec", "5"], 2, "NaN"),
+        (&["sky", "show"], 2, "NAME"),
+        (&["sky", "field", "--ra", "10", "--dec", "5", "--radius-arcmin", "-1"], 2, "-1"),
+        (&["catalogue", "pack", "--from", "/nowhere", "--out", "."], 1, "/nowhere"),
+    ] {
+        let output = scotopic(arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.contains(word), "{arguments:?}: {said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn escapes_in_a_name_do_not_reach_the_terminal() {
+    let output = scotopic(&["sky", "show", "\u{1b}[31mXyz\u{7}zy"]);
+    assert!(!output.stderr.contains(&0x1b) && !output.stderr.contains(&7));
+}
