@@ -120,7 +120,7 @@ fn near_misses_are_offered() {
         ("betelguese", "Betelgeuse"),
         ("ring nebual", "Ring Nebula"),
         ("M111", "M11"),
-        ("alpha centari", "alpha1 Centauri"),
+        ("alpha centari", "Alpha Centauri A"),
         ("whirpool galaxy", "Whirlpool Galaxy"),
     ] {
         let Err(SearchError::NotFound { near, .. }) = Catalogue::embedded().search(typed) else {

@@ -121,7 +121,7 @@ impl Catalogue {
     }
 
     /// The object that a person means by `text`: a Messier, NGC, IC, Caldwell, HIP or HD number, a proper name, or Bayer's or
-    /// Flamsteed's designation in full, abbreviated or Greek. Of several stars with one designation it is the brightest, unless
+    /// Flamsteed's designation in full, abbreviated or Greek. Of several stars with one designation it is the brightest (of nearly equal ones the first), unless
     /// the component is named (`alpha Cen B`).
     ///
     /// # Errors

@@ -221,7 +221,7 @@ impl Index {
         let mut parts = words(text);
         let latin = text.trim().chars().next().filter(char::is_ascii_alphabetic);
         let stars = match self.components(&parts, latin) {
-            Some(stars) => return brightest(&stars, v_mag),
+            Some(stars) => return main_component(&stars, v_mag),
             None => {
                 let component = parts.pop()?;
                 let nth = ["a", "b", "c", "d"].iter().position(|letter| *letter == component)?;
@@ -310,8 +310,15 @@ impl Index {
     }
 }
 
-fn brightest(stars: &[StarNames], v_mag: &impl Fn(u32) -> f32) -> Option<u32> {
-    stars.iter().map(|star| star.hip).min_by(|a, b| v_mag(*a).total_cmp(&v_mag(*b)))
+/// The star that is meant when no component is named: the brightest, but of nearly equal ones (half a magnitude) the first
+/// numbered. So alpha Librae is alpha2, and epsilon Lyrae is epsilon1.
+fn main_component(stars: &[StarNames], v_mag: &impl Fn(u32) -> f32) -> Option<u32> {
+    let brightest = stars.iter().map(|star| v_mag(star.hip)).min_by(f32::total_cmp)?;
+    stars
+        .iter()
+        .filter(|star| v_mag(star.hip) <= brightest + 0.5)
+        .min_by(|a, b| a.index().cmp(&b.index()).then(v_mag(a.hip).total_cmp(&v_mag(b.hip))))
+        .map(|star| star.hip)
 }
 
 /// The first names, none twice, no object twice.

@@ -30,7 +30,7 @@ const BY_HAND: [(&str, &str); 38] = [
     ("NGC3587", "Owl"),
     ("NGC0104", "47 Tucanae;47 Tuc"),
     ("NGC5139", "omega Cen"),
-    ("NGC2070", "Tarantula;30 Doradus"),
+    ("NGC2070", "Tarantula;30 Doradus;30 Dor"),
     ("NGC4755", "Jewel Box;Jewel Box Cluster"),
     ("NGC0869", "h Persei;h Per"),
     ("NGC0884", "chi Persei"),
