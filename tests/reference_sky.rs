@@ -1,5 +1,7 @@
 //! Places on the sky against numbers of ERFA, Swiss Ephemeris and astropy, and properties over the whole sky.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use proptest::prelude::*;
 use scotopic::physics::refraction::{self, Air};
 use scotopic::sky::astrometry::{self, Astrometry, Reduction};
