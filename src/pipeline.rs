@@ -1,1 +1,109 @@
-//! Being built.
+//! The page to read: one frame of data from the mount to the eyepiece.
+//!
+//! ```text
+//! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue) -> picture (overlay) -> projector
+//! ```
+
+use crate::overlay::{Composer, Eye, Photograph, Scene, Style};
+use crate::picture::Picture;
+use crate::sky::catalogue::{Catalogue, Found, Object};
+use crate::sky::field::FieldOfView;
+use crate::sky::optics::Instrument;
+use crate::sky::pointing::Pointing;
+use crate::sky::site::Site;
+use crate::sky::time::Moment;
+use crate::units::Magnitude;
+
+/// The faint end of the star catalogue: asking for less would leave out stars that a large telescope shows.
+const CATALOGUE_LIMIT: f64 = 11.0;
+
+/// What does not change from frame to frame while the observer looks.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// Telescope, eyepiece in use, projector.
+    pub instrument: &'a Instrument,
+    /// Where on Earth; without it the field's rotation on an alt-azimuth mount is unknown and north is up.
+    pub site: Option<&'a Site>,
+    /// All that may be in the field.
+    pub catalogue: &'a Catalogue,
+    /// The observer's photographs.
+    pub photographs: &'a [Photograph],
+    /// What the observer looks at, if it was chosen.
+    pub target: Option<&'a Object>,
+    /// The eye, and the sky's brightness.
+    pub eye: &'a Eye,
+    /// How the overlay looks.
+    pub style: &'a Style,
+}
+
+/// One frame, and what it was made of.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// What part of the sky is in the eyepiece, and which way up.
+    pub field: FieldOfView,
+    /// What is in it, nearest to the middle first.
+    pub found: Found,
+    /// What the projector shows: exactly black when nothing may be drawn.
+    pub picture: Picture,
+}
+
+/// What the projector shows for where the mount points now. The composer keeps what did not change since the last frame.
+#[must_use]
+pub fn frame(pointing: &Pointing, moment: &Moment, view: &View, composer: &mut Composer) -> Frame {
+    let field = FieldOfView::new(pointing, view.instrument, moment, view.site);
+    let found = view.catalogue.within(&field.centre(), field.radius(), faintest(view));
+    let scene = Scene { found: &found, target: view.target, photographs: view.photographs, catalogue: view.catalogue };
+    let picture = composer.compose(&scene, &field, view.eye, view.style);
+    Frame { field, found, picture }
+}
+
+/// The faintest star that this eye can see through this telescope, but never brighter than the catalogue reaches.
+fn faintest(view: &View) -> Magnitude {
+    let limit = view.instrument.limiting_magnitude(view.eye.pupil_mm, view.eye.sky);
+    Magnitude(limit.0.max(CATALOGUE_LIMIT))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::coords::{Equatorial, OfDate};
+    use crate::sky::pointing::Motion;
+    use crate::sky::time::Utc;
+    use crate::units::Angle;
+
+    fn frame_of(motion: Motion, stale: bool) -> Frame {
+        let moment = Moment::at(Utc::from_rfc3339("2026-11-22T20:00:00Z").unwrap());
+        let catalogue = Catalogue::embedded();
+        let m57 = catalogue.search("M57").unwrap();
+        let position: Equatorial<OfDate> = crate::sky::astrometry::apparent(&m57.astrometry, &moment);
+        let pointing = Pointing { position, uncertainty: Angle::arcminutes(2.0), motion, stale };
+        let (instrument, eye, style) = (Instrument::default(), Eye::default(), Style::default());
+        let site = Site::new(49.26, 7.04, 250.0).unwrap();
+        let view = View {
+            instrument: &instrument,
+            site: Some(&site),
+            catalogue,
+            photographs: &[],
+            target: Some(&m57),
+            eye: &eye,
+            style: &style,
+        };
+        frame(&pointing, &moment, &view, &mut Composer::default())
+    }
+
+    #[test]
+    fn pointing_at_m57_finds_m57_in_the_middle_and_lights_the_picture() {
+        let frame = frame_of(Motion::Tracking, false);
+        let nearest = frame.found.objects.first().unwrap();
+        assert_eq!(nearest.name, "M57");
+        let (x, y) = frame.field.projection.pixel(&nearest.position).unwrap();
+        assert!((x - 512.0).hypot(y - 384.0) < 1.0, "M57 stands at {x}, {y}");
+        assert!(!frame.picture.is_black());
+    }
+
+    #[test]
+    fn nothing_is_drawn_while_the_mount_slews_or_its_position_is_stale() {
+        assert!(frame_of(Motion::Slewing, false).picture.is_black());
+        assert!(frame_of(Motion::Tracking, true).picture.is_black());
+    }
+}

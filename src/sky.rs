@@ -1,5 +1,7 @@
 //! Where things are: time, site, coordinates, catalogues, optics, and the field of view.
 
+/// Two stars to align on tonight, and how to align.
+pub mod alignment;
 /// From the catalogue's place to the apparent place of date, and back.
 pub mod astrometry;
 /// Stars and deep-sky objects: search, and what is in a field.

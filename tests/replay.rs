@@ -6,10 +6,18 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use scotopic::hw::mount::driver::{Ours, Settings as DriverSettings, Timing};
+use scotopic::hw::mount::link::Pump;
+use scotopic::hw::mount::order::{Order, Report};
 use scotopic::hw::mount::sim::Simulator;
 use scotopic::hw::mount::sim::fault::Faults;
+use scotopic::hw::mount::sim::port::SimulatedMount;
 use scotopic::hw::mount::sim::settings::Settings;
+use scotopic::hw::port::{Port, PortError};
+use scotopic::hw::trace::{Recording, Replay};
+use scotopic::sky::coords::Equatorial;
 use scotopic::sky::time::Utc;
+use scotopic::units::Angle;
 use serde_json::Value;
 
 /// The recordings whose header says they were made with our simulator.
@@ -43,10 +51,10 @@ fn bytes(entry: &Value) -> Vec<u8> {
 }
 
 #[test]
-fn the_simulator_answers_indi_as_it_did_when_it_was_recorded() {
-    let mut replies = 0;
-    let recordings: Vec<_> = recordings().into_iter().filter(|path| path.to_string_lossy().contains("indi_")).collect();
-    assert!(recordings.len() >= 4, "recordings of INDI are missing: {recordings:?}");
+fn the_simulator_answers_as_it_did_when_it_was_recorded() {
+    let (mut replies, recordings) = (0, recordings());
+    let indi = recordings.iter().filter(|path| path.to_string_lossy().contains("indi_")).count();
+    assert_eq!((indi, recordings.len()), (4, 5), "recordings are missing: {recordings:?}");
     for path in recordings {
         let lines = lines(&path);
         let mut simulator = Simulator::new(settings(&lines[0]));
@@ -71,5 +79,75 @@ fn the_simulator_answers_indi_as_it_did_when_it_was_recorded() {
             }
         }
     }
-    assert!(replies > 200, "only {replies} replies were held against the recordings");
+    assert!(replies > 300, "only {replies} replies were held against the recordings");
+}
+
+/// The recording of our own driver.
+const OURS: &str = "fixtures/traces/scotopic-driver.jsonl";
+
+/// What the simulator of that recording was told: the header's settings.
+fn our_header() -> Value {
+    serde_json::json!({
+        "who": "the driver of scotopic against its own simulator, in virtual time",
+        "version": env!("CARGO_PKG_VERSION"),
+        "date": "2026-11-22T20:00:00Z",
+        "seed": 7,
+        "site": "49.26,7.04,230",
+        "time": "2026-11-22T20:00:00Z",
+        "faults": [],
+    })
+}
+
+/// Twelve seconds: connect, go 10 degrees, arrive, sync, go on, stop.
+fn our_session(header: &Value, port: Box<dyn Port>) -> (Vec<Report>, Option<PortError>) {
+    let settings = settings(header);
+    let ours = Ours { utc_at_start: settings.start, site: Some(settings.site) };
+    let mut port = Some(port);
+    let opener = Box::new(move || port.take().ok_or(PortError::NotThere { name: "the recording".into() }));
+    let mut pump = Pump::new(DriverSettings::new(Timing::SERIAL, ours), opener);
+    let mut reports = Vec::new();
+    let place = |hours: f64, degrees: f64| Equatorial::new(Angle::hours(hours), Angle::degrees(degrees));
+    for turn in 1..=600u32 {
+        let now = Duration::from_millis(20) * turn;
+        match turn {
+            150 => pump.order(Order::Goto(place(7.5, 65.0)), now),
+            400 => pump.order(Order::Sync(place(7.51, 65.1)), now),
+            450 => pump.order(Order::Goto(place(9.0, 60.0)), now),
+            500 => pump.order(Order::Stop, now),
+            _ => {}
+        }
+        reports.extend(pump.step(now).into_iter().flat_map(|update| update.reports));
+    }
+    let lost = reports.iter().find_map(|report| match report {
+        Report::Lost(why) => Some(why.clone()),
+        _ => None,
+    });
+    (reports, lost)
+}
+
+/// With `SCOTOPIC_KEEP_TRACES=1` the recording is made anew first.
+#[test]
+fn the_driver_says_what_it_said_when_it_was_recorded() {
+    let header = our_header();
+    if std::env::var_os("SCOTOPIC_KEEP_TRACES").is_some() {
+        let mount = SimulatedMount::new(Simulator::new(settings(&header)));
+        let file = std::fs::File::create(OURS).unwrap();
+        let port = Recording::new(mount.open().unwrap(), Box::new(file), &header);
+        our_session(&header, Box::new(port));
+    }
+    let trace = std::fs::read_to_string(OURS).unwrap();
+    let (reports, lost) = our_session(&header, Box::new(Replay::parse(&trace).unwrap()));
+    assert_eq!(
+        lost, None,
+        "the driver left its recording: if that is meant, record it anew with SCOTOPIC_KEEP_TRACES=1"
+    );
+    for (what, holds) in [
+        ("connected", reports.iter().any(|report| matches!(report, Report::Connected { .. }))),
+        ("arrived", reports.iter().any(|report| matches!(report, Report::Arrived { .. }))),
+        ("synchronised", reports.iter().any(|report| matches!(report, Report::Synced { .. }))),
+        ("stopping", reports.iter().any(|report| matches!(report, Report::Stopping))),
+    ] {
+        assert!(holds, "it was never {what}: {reports:?}");
+    }
+    assert!(!reports.iter().any(|report| matches!(report, Report::Fault(_))), "{reports:?}");
 }

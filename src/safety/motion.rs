@@ -35,6 +35,10 @@ pub fn judge_motion(situation: &Situation, before: &Fix, latest: &Fix) -> Verdic
 }
 
 fn judged(situation: &Situation, before: &Fix, latest: &Fix) -> Result<Vec<Hazard>, Hazard> {
+    // An order that has just gone out is a slew, though the mount may not be seen to move yet: the motion seen before it must
+    // not stop the go-to that leads away.
+    let motion = if situation.ordered.is_some() { Motion::Slewing } else { situation.motion };
+    let situation = &Situation { motion, ..*situation };
     let (utc, site) = match (situation.clock.trusted(), situation.site) {
         (Ok(utc), Some(site)) => (utc, site),
         // It cannot be judged. The person at the hand controller can see the Sun: tell, and let them move.

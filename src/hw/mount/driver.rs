@@ -10,6 +10,8 @@
 
 mod facts;
 mod jobs;
+#[cfg(test)]
+mod tests;
 mod track;
 mod watch;
 mod wire;

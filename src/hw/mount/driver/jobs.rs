@@ -14,6 +14,9 @@ use crate::sky::site::Site;
 /// A command of an order is sent this often at most.
 const MOST_TRIES: u32 = 3;
 
+/// So long after a synchronisation the position may jump.
+const SYNC_SETTLES: Duration = Duration::from_secs(3);
+
 /// An order under way.
 #[derive(Debug)]
 pub(super) struct Job {
@@ -143,7 +146,7 @@ impl Driver {
                 self.report(Report::GotoRefused { reason });
             }
             (Order::Sync(_), Reply::Text(reply)) => {
-                self.track.allow_jump();
+                self.track.allow_jump(now + SYNC_SETTLES);
                 self.poll_at = now;
                 self.report(Report::Synced { reply });
             }

@@ -53,7 +53,8 @@ pub(super) struct Track {
     samples: VecDeque<Sample>,
     held: Option<Sample>,
     settling: bool,
-    any_jump: bool,
+    /// Until when any position is believed.
+    jump_until: Option<Duration>,
 }
 
 impl Track {
@@ -61,9 +62,9 @@ impl Track {
         *self = Track::default();
     }
 
-    /// The next position may be anywhere: the mount was synchronised.
-    pub(super) fn allow_jump(&mut self) {
-        self.any_jump = true;
+    /// The position may jump once until then: the mount was synchronised.
+    pub(super) fn allow_jump(&mut self, until: Duration) {
+        self.jump_until = Some(until);
     }
 
     /// Whether a position waits to be confirmed.
@@ -85,11 +86,13 @@ impl Track {
             held.position.separation(&sample.position) <= reach(&held, &sample)
                 && held.position.separation(&sample.position) <= jump
         });
-        if (impossible || unexpected) && !confirmed && !self.any_jump {
+        let allowed = jump > STEP && self.jump_until.is_some_and(|until| sample.at <= until);
+        if (impossible || unexpected) && !confirmed && !allowed {
             self.held = Some(sample);
             return Gate::Held { jump, seconds, impossible };
         }
-        if std::mem::take(&mut self.any_jump) || (impossible && confirmed) {
+        if allowed || (impossible && confirmed) {
+            self.jump_until = None;
             self.samples.clear();
         }
         if jump > STEP {
