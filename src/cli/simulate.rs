@@ -45,10 +45,10 @@ pub struct Mount {
     #[arg(long, value_name = "RFC3339", value_parser = |text: &str| Utc::from_rfc3339(text))]
     time: Option<Utc>,
     /// Periodic error of each worm in arcseconds, peak to peak
-    #[arg(long, value_name = "ARCSEC", default_value_t = 25.0, value_parser = size)]
+    #[arg(long, value_name = "ARCSEC", default_value_t = 25.0, value_parser = size, allow_hyphen_values = true)]
     periodic_error: f64,
     /// Size of the pointing error on the sky in arcminutes
-    #[arg(long, value_name = "ARCMIN", default_value_t = 2.0, value_parser = size)]
+    #[arg(long, value_name = "ARCMIN", default_value_t = 2.0, value_parser = size, allow_hyphen_values = true)]
     pointing_error: f64,
     /// Drift of the true axis in azimuth, arcseconds a second
     #[arg(long, value_name = "ARCSEC_PER_S", default_value_t = 0.0, allow_hyphen_values = true)]
@@ -80,8 +80,12 @@ pub fn run(device: &Device) -> Result<(), Failure> {
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT, signal_hook::consts::SIGHUP] {
         signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(Failure::failed)?;
     }
-    let mut server = Server::open(simulator, mount.listen)
-        .map_err(|error| Failure::Failed(format!("the simulator cannot listen at {:?}: {error}", mount.listen)))?;
+    let mut server = Server::open(simulator, mount.listen).map_err(|error| {
+        Failure::Failed(format!(
+            "the simulator cannot listen at {}: {error}; choose another port, or port 0",
+            mount.listen
+        ))
+    })?;
     if let Some(recorder) = recorder {
         server.watch(recorder.watcher());
     }

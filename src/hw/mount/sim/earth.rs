@@ -17,8 +17,7 @@ pub(super) struct SiderealClock {
 impl SiderealClock {
     /// Exact at this instant; a day later still within 0.02 s.
     pub(super) fn at(utc: Utc) -> SiderealClock {
-        let moment = Moment { utc, delta_t_s: 69.0 };
-        SiderealClock { utc, greenwich_deg: moment.greenwich_sidereal_time().to_degrees() }
+        SiderealClock { utc, greenwich_deg: Moment::at(utc).greenwich_sidereal_time().to_degrees() }
     }
 
     /// Local sidereal time in degrees, 0 to 360; longitude east positive.

@@ -25,6 +25,15 @@ pub enum Listen {
     Tcp(SocketAddr),
 }
 
+impl fmt::Display for Listen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Listen::Pty => f.write_str("pty"),
+            Listen::Tcp(address) => write!(f, "tcp:{address}"),
+        }
+    }
+}
+
 /// Why a place to listen was refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ListenError {
@@ -128,19 +137,20 @@ impl Server {
     /// # Errors
     /// The system's, when the place to listen is lost.
     pub fn serve(&mut self, ended: &dyn Fn() -> bool, renamed: &mut dyn FnMut(&str)) -> io::Result<()> {
+        let mut announced = self.line.endpoint();
         while !ended() {
             let now = self.now();
             self.simulator.tick(now);
             if self.simulator.plugged(now) != self.plugged {
                 self.plugged = !self.plugged;
-                let before = self.line.endpoint();
                 if self.plugged {
                     self.line.replug()?;
                 } else {
                     self.line.unplug()?;
                 }
-                if self.plugged && self.line.endpoint() != before {
-                    renamed(&self.line.endpoint());
+                if self.plugged && self.line.endpoint() != announced {
+                    announced = self.line.endpoint();
+                    renamed(&announced);
                 }
             }
             self.pass_on(now)?;

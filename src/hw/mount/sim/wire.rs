@@ -223,11 +223,12 @@ impl Wire {
 
     /// What happens on the line by itself at `at`.
     pub(super) fn happen(&mut self, at: Duration) {
-        if !self.broken && self.broken_at(at) {
+        let begun = |span: Option<Span>| span.is_some_and(|span| span.from <= at);
+        if !self.broken && begun(self.faults.line_break) {
             self.outgoing.push_back((at, 0));
             self.broken = true;
         }
-        if !self.pulled && !self.plugged(at) {
+        if !self.pulled && begun(self.unplugged) {
             self.pulled = true;
             self.incoming.clear();
             self.client_left();

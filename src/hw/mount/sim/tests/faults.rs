@@ -272,3 +272,13 @@ fn east_and_west_are_exchanged_on_request() {
     assert!(moved(Bench::new()) < -1.0);
     assert!(moved(Bench::with_fault("reversed=on")) > 1.0);
 }
+
+#[test]
+fn spans_of_no_length_and_times_of_naught_do_no_harm() {
+    for fault in ["unplug=0,0", "break=1,0", "silence=0,0", "restart=0", "flood=0,0", "format-switch=0", "keypad=0,n,0"]
+    {
+        let mut bench = Bench::with_fault(fault);
+        bench.wait_s(12.0);
+        assert!(bench.ask(b":GVP#").ends_with(b"LX2001#"), "{fault}");
+    }
+}
