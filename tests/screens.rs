@@ -153,6 +153,14 @@ fn states() -> Vec<(String, Model)> {
     for screen in Screen::ALL {
         let mut model = looking();
         model.view.screen = screen;
+        if screen == Screen::Log {
+            for report in [Report::SlewStarted, Report::Arrived { off_by: Angle::arcminutes(0.2) }] {
+                let _ = update(&mut model, Event::Mount(Box::new(tracking()), vec![report]));
+            }
+            let long = "a line that is longer than the screen is wide and has to be continued on the one that follows";
+            let _ = update(&mut model, Event::Notice(long.into()));
+            model.banner = None;
+        }
         if screen == Screen::Mount {
             model.belief.display = Known::Confirmed {
                 value: Display {

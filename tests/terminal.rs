@@ -207,6 +207,7 @@ fn red(color: vt100::Color) -> bool {
 fn a_session_searches_slews_arrives_stops_and_quits_and_the_terminal_is_as_it_was() {
     let mut session = Session::start(&[], &["observe", "--time", "2026-11-22T20:00:00Z"]);
     session.wait_for("SIMULATED");
+    session.wait_for("linked to LX2001");
     session.wait_for("tracking");
     session.press("/M31");
     session.wait_for("NGC 224");

@@ -88,10 +88,11 @@ fn heard(model: &mut Model, report: &Report) {
             model.log.add(utc, Weight::Warning, text);
         }
         Report::Connected { .. } => {
-            if model.banner.as_ref().is_some_and(|banner| banner.weight != Weight::Alarm) {
-                model.banner = None;
+            if model.banner.is_some() {
+                model.say(Weight::Note, &text, "");
+            } else {
+                model.note(text);
             }
-            model.note(text);
         }
         _ => model.note(text),
     }

@@ -75,7 +75,7 @@ fn darkened(model: &mut Model, why: &'static str) -> Vec<Effect> {
     if model.projector == Projector::Dark(why) {
         return Vec::new();
     }
-    if model.here.is_none_or(|here| !here.pointing.may_draw()) {
+    if model.overlay.mode != Mode::Off {
         model.field.clear();
     }
     let lit = !matches!(model.projector, Projector::Dark(_));

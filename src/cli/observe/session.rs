@@ -19,6 +19,8 @@ use crate::cli::{Failure, answer_json};
 use crate::hw::mount::belief::LinkState;
 use crate::hw::mount::driver::Ours;
 use crate::hw::mount::link::Update;
+use crate::hw::mount::order::Report;
+use crate::sky::catalogue::Catalogue;
 use crate::sky::pointing::Motion;
 use crate::tui::terminal::Taken;
 use crate::tui::theme::Depth;
@@ -132,6 +134,8 @@ impl Session {
             let _ = wakes.send(Wake::Notice(notice));
         }
         let alive = Alive::default();
+        // The catalogue is unpacked while the screen is already up.
+        std::thread::spawn(|| drop(Catalogue::embedded().complete("M", 1)));
         let told = wakes.clone();
         signals::listen(move || drop(told.send(Wake::AskedToEnd))).map_err(Failure::failed)?;
         let told = wakes.clone();
@@ -246,7 +250,7 @@ impl Session {
 
     /// An event, and what comes of it.
     fn happened(&mut self, event: Event) {
-        let fresh = matches!(event, Event::Mount(..));
+        let fresh = matches!(&event, Event::Mount(_, reports) if reports.contains(&Report::Position));
         for effect in update(&mut self.model, event) {
             self.carry_out(effect, fresh);
         }
