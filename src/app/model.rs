@@ -13,6 +13,7 @@ use crate::overlay::style::Mode;
 use crate::picture::Picture;
 use crate::safety::suspend::Clocks;
 use crate::safety::{Acknowledgement, Clock, Fix, Rules, TurnCounter};
+use crate::sky::alignment::Pair;
 use crate::sky::catalogue::Object;
 use crate::sky::coords::{Airless, Equatorial, Horizontal, OfDate};
 use crate::sky::field::Nudge;
@@ -172,6 +173,8 @@ pub struct Model {
     pub target: Option<Object>,
     /// What is in the field.
     pub field: Vec<Listed>,
+    /// Pairs of stars to align on, as proposed when the screen was opened.
+    pub pairs: Vec<Pair>,
     /// Telescope, eyepieces, projector.
     pub instrument: Instrument,
     /// The search box.
@@ -208,6 +211,7 @@ impl Model {
             nudge: opening.nudge,
             target: None,
             field: Vec::new(),
+            pairs: Vec::new(),
             instrument: opening.instrument.clone(),
             search: Search::default(),
             overlay: Overlay { mode: Mode::Over, brightness: 7 },

@@ -5,6 +5,8 @@ use std::time::Duration;
 use super::log::printable;
 use super::model::Model;
 use crate::hw::mount::belief::{Aligned, Known, LinkState, Mounting, Precision, Source, Tracking};
+use crate::sky::alignment::Proposed;
+use crate::sky::alignment::guide::{self, Guide};
 use crate::sky::pointing::Motion;
 use crate::units::angle::{DegreesMinutesSeconds, HoursMinutesSeconds};
 
@@ -132,4 +134,23 @@ pub fn sources(model: &Model) -> String {
         None => "clock and site are not yet compared with the mount's".to_owned(),
         Some(decision) => format!("used: clock {}, site {}", whose(decision.clock), whose(decision.site_from)),
     }
+}
+
+/// What the observer may want explained about aligning, in the order in which it is needed.
+#[must_use]
+pub fn guides() -> [Guide; 3] {
+    [guide::two_star_alignment(), guide::high_precision(), guide::periodic_error()]
+}
+
+/// The pairs of stars to align on tonight, a line each.
+#[must_use]
+pub fn pairs(model: &Model) -> Vec<String> {
+    let star = |star: &Proposed| {
+        let (altitude, azimuth) = (star.seen.altitude().to_degrees(), star.seen.azimuth().to_degrees());
+        format!("{} ({:.1} mag, alt {altitude:.0}°, az {azimuth:.0}°)", printable(&star.name), star.v_mag)
+    };
+    let pairs = model.pairs.iter();
+    pairs
+        .map(|p| format!("{} and {}: {:.0}° apart", star(&p.first), star(&p.second), p.separation.to_degrees()))
+        .collect()
 }

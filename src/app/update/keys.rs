@@ -9,6 +9,7 @@ use crate::app::model::{Model, Screen};
 use crate::app::search::Search;
 use crate::hw::mount::order::Order;
 use crate::safety::Acknowledgement;
+use crate::sky::alignment;
 use crate::sky::catalogue::Catalogue;
 use crate::sky::field::FieldOfView;
 
@@ -17,6 +18,9 @@ const PUSH_PX: f64 = 8.0;
 
 /// A picture is not pushed farther than this: whoever needs more should sync.
 const FARTHEST_DEG: f64 = 5.0;
+
+/// So many pairs of stars are proposed.
+const PAIRS: usize = 3;
 
 /// So many lines are a page.
 const PAGE: usize = 10;
@@ -117,7 +121,12 @@ fn done(model: &mut Model, action: Action) -> Vec<Effect> {
             model.note("the cable hangs free: the turns are counted from here");
             return vec![Effect::Keep(model.turns, model.nudge)];
         }
-        Action::Show(screen) => model.show(screen),
+        Action::Show(screen) => {
+            if screen == Screen::Align {
+                propose(model);
+            }
+            model.show(screen);
+        }
         Action::Up => model.view.bar = model.view.bar.saturating_sub(1),
         Action::Down => scroll(model, 1),
         Action::PageUp => model.view.bar = model.view.bar.saturating_sub(PAGE),
@@ -126,6 +135,12 @@ fn done(model: &mut Model, action: Action) -> Vec<Effect> {
         Action::Quit => return goto::quit(model),
     }
     Vec::new()
+}
+
+/// Proposes stars to align on, for where and when we are.
+fn propose(model: &mut Model) {
+    let (Some(moment), Some(site)) = (model.moment(), model.site()) else { return };
+    model.pairs = alignment::propose(&alignment::bright_stars(Catalogue::embedded()), &moment, &site, PAIRS);
 }
 
 fn scroll(model: &mut Model, by: usize) {

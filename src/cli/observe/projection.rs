@@ -4,12 +4,10 @@ use std::time::Duration;
 
 use crate::app::scene::Scene;
 use crate::hw::projector::{Projector, ProjectorError};
-use crate::overlay::compose::{self, Composer};
-use crate::overlay::photograph::Photograph;
-use crate::overlay::style::{Eye, Style};
+use crate::overlay::{Composer, Eye, Photograph, Style};
 use crate::picture::Picture;
+use crate::pipeline::{self, View};
 use crate::sky::catalogue::Catalogue;
-use crate::sky::field::FieldOfView;
 
 /// So many ages are kept: enough for the 99th percentile, and no more memory in the longest night.
 const KEPT: usize = 4096;
@@ -43,14 +41,16 @@ impl Projection {
 
     /// The picture of a scene.
     pub(super) fn compose(&mut self, scene: &Scene) -> Picture {
-        let field = FieldOfView::new(&scene.pointing, &scene.instrument, &scene.moment, scene.site.as_ref());
-        let catalogue = Catalogue::embedded();
-        let faintest = scene.instrument.limiting_magnitude(self.eye.pupil_mm, self.eye.sky);
-        let found = catalogue.within(&field.centre(), field.radius(), faintest);
-        let style = Style { mode: scene.mode, gain: scene.brightness, ..Style::default() };
-        let drawn =
-            compose::Scene { found: &found, target: scene.target.as_ref(), photographs: &self.photographs, catalogue };
-        self.composer.compose(&drawn, &field, &self.eye, &style)
+        let view = View {
+            instrument: &scene.instrument,
+            site: scene.site.as_ref(),
+            catalogue: Catalogue::embedded(),
+            photographs: &self.photographs,
+            target: scene.target.as_ref(),
+            eye: &self.eye,
+            style: &Style { mode: scene.mode, gain: scene.brightness, ..Style::default() },
+        };
+        pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
     }
 
     pub(super) fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {
