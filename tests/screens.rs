@@ -297,3 +297,37 @@ fn a_message_is_seen_with_what_to_do_and_an_alarm_is_not_covered() {
     let words: Vec<&str> = seen.split_whitespace().collect();
     assert!(words.join(" ").contains("Cut the mount's power"), "{seen}");
 }
+
+/// Bytes on their way to a terminal, kept where the test can read them.
+#[derive(Clone, Default)]
+struct Wire(Arc<std::sync::Mutex<Vec<u8>>>);
+
+impl std::io::Write for Wire {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn what_a_terminal_shows_after_each_change_is_what_was_drawn() {
+    let wire = Wire::default();
+    let backend = scotopic::tui::backend::RedBackend::new(wire.clone(), || Ok((80, 24)));
+    let mut terminal = Terminal::new(backend).unwrap();
+    let (rows, columns) = (std::num::NonZero::new(24).unwrap(), std::num::NonZero::new(80).unwrap());
+    let mut parser = vt100::Parser::new(rows, columns, 0);
+    let mut states = states();
+    let again: Vec<_> = states.iter().rev().cloned().collect();
+    states.extend(again);
+    for (name, model) in states {
+        terminal.draw(|frame| draw(&model, Depth::Indexed, frame)).unwrap();
+        parser.process(&std::mem::take(&mut *wire.0.lock().unwrap()));
+        let shown: Vec<String> = parser.screen().rows(0, 80).map(|row| row.trim_end().to_owned()).collect();
+        let drawn = text(&drawn(&model, Depth::Indexed, 80, 24));
+        assert_eq!(shown.join("\n") + "\n", drawn, "{name}");
+    }
+}
