@@ -39,13 +39,13 @@ use stars::{Form, StarFile};
 use tiles::Tiles;
 
 /// Made by `scotopic catalogue pack`.
-const HIPPARCOS: &[u8] = include_bytes!("catalogue/data/hipparcos.bin");
+static HIPPARCOS: &[u8] = include_bytes!("catalogue/data/hipparcos.bin");
 /// Made by `scotopic catalogue pack`.
-const FAINT_STARS: &[u8] = include_bytes!("catalogue/data/faint_stars.bin");
+static FAINT_STARS: &[u8] = include_bytes!("catalogue/data/faint_stars.bin");
 /// Made by `scotopic catalogue pack`.
-const STAR_NAMES: &str = include_str!("catalogue/data/star_names.tsv");
+static STAR_NAMES: &str = include_str!("catalogue/data/star_names.tsv");
 /// Made by `scotopic catalogue pack`; CC-BY-SA-4.0, unlike the program.
-const OPENNGC: &str = include_str!("catalogue/data/openngc.tsv");
+static OPENNGC: &str = include_str!("catalogue/data/openngc.tsv");
 
 /// All catalogues, ready to be asked.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use crate::sky::coords::{Equatorial, J2000};
 /// The boundaries: right ascension from and to in hours, southern edge in degrees, abbreviation; equinox B1875.
 ///
 /// Source: Roman (1987), PASP 99, 695; CDS catalogue VI/42. The first row that holds a position names its constellation.
-const BOUNDARIES: &str = include_str!("data/constellations_roman_1987.txt");
+static BOUNDARIES: &str = include_str!("data/constellations_roman_1987.txt");
 
 /// Julian date of the Besselian epoch 1875.0.
 const B1875: f64 = 2_405_889.258_550_475;
