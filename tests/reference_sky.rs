@@ -150,8 +150,8 @@ fn appendix_b_holds_with_alpha_as_the_hour_angle() {
     }
 }
 
-/// US Naval Observatory, *Complete Sun data*: in Helsinki the Sun crosses the lower meridian at 22:06:24 UTC on 22 November
-/// 2026 (longitude 24.9384 east is 1h39m45s; the equation of time is +13m50s).
+/// By hand: mean midnight at longitude 24.9384 east is 1h39m45s before 24h UTC; the equation of time on 22 November is about
+/// +13m50s, so that the Sun crosses the lower meridian at about 22:06:25 UTC.
 #[test]
 fn midnight_in_helsinki_comes_when_the_equation_of_time_says() {
     let site = Site::new(60.1699, 24.9384, 30.0).unwrap();
