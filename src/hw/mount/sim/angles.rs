@@ -21,9 +21,10 @@ impl Form {
         format!("{:02}:{:02}.{}#", tenths / 600, tenths / 10 % 60, tenths % 10).into_bytes()
     }
 
-    /// `sDD<DF>MM:SS#` or `sDD<DF>MM#`; the sign is kept on `-00`.
+    /// `sDD<DF>MM:SS#` or `sDD<DF>MM#`; the sign is kept on `-00` unless all that is written is naught.
     pub(super) fn signed(self, degrees: f64) -> Vec<u8> {
-        let sign = if degrees < 0.0 { b'-' } else { b'+' };
+        let parts = if self.long { degrees * 3600.0 } else { degrees * 60.0 };
+        let sign = if parts.round() < 0.0 { b'-' } else { b'+' };
         let mut text = vec![sign];
         text.extend(self.unsigned(degrees.abs(), 2));
         text
@@ -144,6 +145,7 @@ mod tests {
         assert_eq!(REAL.hours(23.999_999), b"00:00:00#");
         assert_eq!(REAL.signed(-0.999_999_9), b"-01\xDF00:00#");
         assert_eq!(REAL.signed(-0.5), b"-00\xDF30:00#");
+        assert_eq!(REAL.signed(-1e-12), b"+00\xDF00:00#");
         assert_eq!(REAL.turn(359.999_99), b"000\xDF00:00#");
     }
 

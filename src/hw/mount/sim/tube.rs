@@ -71,6 +71,8 @@ pub(super) struct Tube {
     followed: Option<(f64, f64)>,
     held: [Option<Held>; 4],
     goal: Option<Goal>,
+    /// The goal is the park position: tracking ends there.
+    parking: bool,
     /// The goal is only to catch up with the sky.
     catching_up: bool,
     /// The axes move otherwise than with the sky.
@@ -106,6 +108,7 @@ impl Tube {
             followed: None,
             held: [None; 4],
             goal: None,
+            parking: false,
             catching_up: false,
             moving: false,
             at: Duration::ZERO,
@@ -166,9 +169,19 @@ impl Tube {
         self.tracking
     }
 
+    /// Tracking on or off; what moves goes on moving.
     pub(super) fn set_tracking(&mut self, on: bool) {
         self.tracking = on;
-        self.rest();
+        if !self.moving {
+            self.rest();
+        }
+    }
+
+    /// Goes to the park position and stands there.
+    pub(super) fn park(&mut self) {
+        self.set_tracking(false);
+        self.go(Goal::Ground(0.0, 0.0));
+        self.parking = true;
     }
 
     pub(super) fn rate_hz(&self) -> f64 {
@@ -182,6 +195,7 @@ impl Tube {
     pub(super) fn go(&mut self, goal: Goal) {
         self.held = [None; 4];
         self.goal = Some(goal);
+        self.parking = false;
         self.catching_up = false;
         self.moving = true;
     }
@@ -209,7 +223,9 @@ impl Tube {
     pub(super) fn sync(&mut self, ra: f64, dec: f64) {
         let (azimuth, altitude) = self.ground_of((ra, dec), self.at);
         self.sync = (signed(azimuth - self.azimuth.position), altitude - self.altitude.position);
-        self.rest();
+        if !self.moving {
+            self.rest();
+        }
     }
 
     /// Brings the axes up to `now`. While they move, that is the last step before it: steps stand on a grid of their own, so
@@ -320,7 +336,9 @@ impl Tube {
         self.altitude.stop_at((low - self.sync.1, high - self.sync.1));
         let still = |speed: f64, sky: f64| (speed - sky).abs() <= limits.acceleration * dt.max(0.001);
         if near && still(self.azimuth.speed, sky.0) && still(self.altitude.speed, sky.1) {
-            self.goal = None;
+            if self.goal.take().is_some() && self.parking {
+                self.tracking = false;
+            }
             self.rest();
         }
     }

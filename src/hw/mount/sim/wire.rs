@@ -229,9 +229,12 @@ impl Wire {
             self.broken = true;
         }
         if !self.pulled && begun(self.unplugged) {
+            // What was under way is lost, both ways; what had arrived has arrived.
             self.pulled = true;
             self.incoming.clear();
-            self.client_left();
+            self.outgoing.retain(|(out, _)| *out <= at);
+            self.held.clear();
+            self.glued.clear();
         }
         if self.flood_left > 0 && self.flood_at <= at {
             self.flood_left -= 1;

@@ -5,7 +5,6 @@ use std::time::Duration;
 use super::Controller;
 use crate::hw::mount::sim::angles::digits;
 use crate::hw::mount::sim::answer::Answer;
-use crate::hw::mount::sim::tube::Goal;
 
 /// How long the start-up takes before the controller says `X`.
 const START_UP: Duration = Duration::from_secs(10);
@@ -68,8 +67,7 @@ impl Controller {
         match body {
             b"I" => self.restart(at),
             b"hP" => {
-                self.tube.set_tracking(false);
-                self.tube.go(Goal::Ground(0.0, 0.0));
+                self.tube.park();
                 self.goto_began = at;
                 self.power = Power::Parking;
                 self.handset.say("Parking Scope", "");
