@@ -8,6 +8,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use self::settings::Settings;
+
 /// The catalogue files that are built into the program.
 pub mod catalogue;
 /// How a subcommand ends without doing what was asked.
@@ -106,10 +108,10 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Observe(arguments)) => observe::run(&arguments),
         Some(Command::Simulate(device)) => simulate::run(&device),
         Some(Command::Supervise) => supervise::run(),
-        Some(Command::Sky(command)) => sky::run(&command, None),
+        Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
-        Some(Command::Overlay(arguments)) => overlay::run(&arguments, None),
-        Some(Command::Optics(arguments)) => optics::run(&arguments),
+        Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
+        Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);

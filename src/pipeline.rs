@@ -4,7 +4,7 @@
 //! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue) -> picture (overlay) -> projector
 //! ```
 
-use crate::overlay::{Composer, Eye, Photograph, Scene, Style};
+use crate::overlay::{Composer, Eye, Photograph, Scene, Style, reach};
 use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, Found, Object};
 use crate::sky::field::FieldOfView;
@@ -51,7 +51,7 @@ pub struct Frame {
 #[must_use]
 pub fn frame(pointing: &Pointing, moment: &Moment, view: &View, composer: &mut Composer) -> Frame {
     let field = FieldOfView::new(pointing, view.instrument, moment, view.site);
-    let found = view.catalogue.within(&field.centre(), field.radius(), faintest(view));
+    let found = view.catalogue.within(&field.centre(), reach(&field, view.style, view.target), faintest(view));
     let scene = Scene { found: &found, target: view.target, photographs: view.photographs, catalogue: view.catalogue };
     let picture = composer.compose(&scene, &field, view.eye, view.style);
     Frame { field, found, picture }

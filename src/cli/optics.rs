@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::overlay::{instrument, within};
+use super::overlay::{instrument, sky_brightness};
+use super::settings::Settings;
 use super::{Failure, answer, answer_json};
 use crate::overlay::Eye;
 use crate::sky::optics::Instrument;
@@ -14,12 +15,12 @@ use crate::units::SurfaceBrightness;
 /// The settings of `optics`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Telescope, eyepieces and projector (default: those of the thesis)
+    /// Telescope, eyepieces and projector [default: the settings', else those of the thesis]
     #[arg(long, value_name = "FILE")]
     pub instrument: Option<PathBuf>,
-    /// Brightness of the sky's background in magnitudes per square arcsecond
-    #[arg(long, value_name = "MAG", default_value_t = 21.0)]
-    pub sky_brightness: f64,
+    /// Brightness of the sky's background in magnitudes per square arcsecond [default: the settings', else 20.8]
+    #[arg(long, value_name = "MAG")]
+    pub sky_brightness: Option<f64>,
     /// Answer in JSON
     #[arg(long)]
     pub json: bool,
@@ -55,9 +56,9 @@ struct Row {
 ///
 /// # Errors
 /// The instrument file cannot be read or is wrong.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let sky = SurfaceBrightness(within("--sky-brightness", arguments.sky_brightness, 10.0, 25.0)?);
-    let instrument = instrument(arguments.instrument.as_deref(), None)?;
+pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
+    let sky = sky_brightness(arguments.sky_brightness, settings)?;
+    let instrument = instrument(arguments.instrument.as_deref().or(settings.instrument.as_deref()), None)?;
     let answered = derived(&instrument, sky);
     if arguments.json {
         return answer_json(&answered);

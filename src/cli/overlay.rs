@@ -8,9 +8,11 @@ use std::time::SystemTime;
 use clap::Args;
 use serde::Serialize;
 
+use super::settings::Settings;
 use super::{Failure, answer, answer_json, photographs};
-use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Scene, Style, reach};
+use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style};
 use crate::picture::png;
+use crate::pipeline::{self, Frame, View};
 use crate::sky::astrometry::{Astrometry, Reduction};
 use crate::sky::catalogue::{Catalogue, Object};
 use crate::sky::coords::Equatorial;
@@ -20,7 +22,7 @@ use crate::sky::optics::Instrument;
 use crate::sky::pointing::{Motion, Pointing};
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
-use crate::units::{Angle, Magnitude, SurfaceBrightness};
+use crate::units::{Angle, SurfaceBrightness};
 
 /// The settings of `overlay`.
 #[derive(Debug, Args)]
@@ -46,15 +48,15 @@ pub struct Arguments {
     /// Observing site in degrees, north and east positive, and metres: it turns the field of an alt-azimuth mount
     #[arg(long, value_name = "LAT,LON,ELEV", allow_hyphen_values = true)]
     pub site: Option<Site>,
-    /// Folder of your photographs: FITS with WCS, PNG or JPEG with a TOML file beside each
+    /// Folder of your photographs: FITS with WCS, PNG or JPEG with a TOML file beside each [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub photographs: Option<PathBuf>,
-    /// Telescope, eyepieces and projector (default: those of the thesis)
+    /// Telescope, eyepieces and projector [default: the settings', else those of the thesis]
     #[arg(long, value_name = "FILE")]
     pub instrument: Option<PathBuf>,
-    /// Brightness of the sky's background in magnitudes per square arcsecond
-    #[arg(long, value_name = "MAG", default_value_t = 21.0)]
-    pub sky_brightness: f64,
+    /// Brightness of the sky's background in magnitudes per square arcsecond [default: the settings', else 20.8]
+    #[arg(long, value_name = "MAG")]
+    pub sky_brightness: Option<f64>,
     /// Uncertainty of the pointing in arcminutes
     #[arg(long, value_name = "ARCMIN", default_value_t = 2.0)]
     pub uncertainty: f64,
@@ -98,11 +100,11 @@ struct Answer<'a> {
     black: bool,
 }
 
-/// Runs the subcommand; `profile_site` is the observer's own site, used where none is given.
+/// Runs the subcommand; what the command line leaves out comes from the settings.
 ///
 /// # Errors
 /// No such name, a number out of its range, a file that cannot be read or written.
-pub fn run(arguments: &Arguments, profile_site: Option<Site>) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     // Where to look, when, through what.
     let catalogue = Catalogue::embedded();
     let target = target(arguments, catalogue)?;
@@ -110,18 +112,17 @@ pub fn run(arguments: &Arguments, profile_site: Option<Site>) -> Result<(), Fail
         Some(object) => object.astrometry,
         None => Astrometry::fixed(position(arguments)?),
     };
-    let instrument = instrument(arguments.instrument.as_deref(), arguments.eyepiece)?;
-    let site = arguments.site.or(profile_site);
+    let instrument_file = arguments.instrument.as_deref().or(settings.instrument.as_deref());
+    let instrument = instrument(instrument_file, arguments.eyepiece)?;
+    let site = arguments.site.or(settings.site);
     if site.is_none() {
         note("no --site was given: the field is drawn with north where the tube's upper side is");
     }
     let utc = arguments.at.unwrap_or_else(now);
     let moment = Moment { utc, delta_t_s: delta_t::default_seconds(utc) };
     let style = style(arguments)?;
-    let eye = Eye {
-        sky: SurfaceBrightness(within("--sky-brightness", arguments.sky_brightness, 10.0, 25.0)?),
-        ..Eye::default()
-    };
+    let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, ..Eye::default() };
+    let photographs = photographs(arguments.photographs.as_deref().or(settings.photographs.as_deref()))?;
 
     // The field, what is in it, and the picture.
     let mut pointing = Pointing {
@@ -130,17 +131,20 @@ pub fn run(arguments: &Arguments, profile_site: Option<Site>) -> Result<(), Fail
         motion: Motion::Tracking,
         stale: false,
     };
-    let mut field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
     if let Some((right, down)) = arguments.nudge {
+        let field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
         pointing.position = field.nudge(right, down).applied(&pointing.position);
-        field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
     }
-    let photographs = photographs(arguments.photographs.as_deref())?;
-    let faintest = instrument.limiting_magnitude(eye.pupil_mm, eye.sky);
-    let found =
-        catalogue.within(&field.centre(), reach(&field, &style, target.as_ref()), Magnitude(faintest.0.max(11.0)));
-    let scene = Scene { found: &found, target: target.as_ref(), photographs: &photographs, catalogue };
-    let picture = Composer::default().compose(&scene, &field, &eye, &style);
+    let view = View {
+        instrument: &instrument,
+        site: site.as_ref(),
+        catalogue,
+        photographs: &photographs,
+        target: target.as_ref(),
+        eye: &eye,
+        style: &style,
+    };
+    let Frame { field, found, picture } = pipeline::frame(&pointing, &moment, &view, &mut Composer::default());
     write(&arguments.out, &png::encode(&picture).map_err(Failure::failed)?)?;
 
     let shown = Answer {
@@ -208,6 +212,15 @@ pub(super) fn instrument(file: Option<&Path>, eyepiece_mm: Option<f64>) -> Resul
         Some(mm) => Ok(instrument.with_eyepiece(within("--eyepiece", mm, 1.0, 200.0)?)),
         None => Ok(instrument),
     }
+}
+
+/// The sky's brightness from the command line, else from the settings.
+///
+/// # Errors
+/// Brighter than any twilight or darker than any sky.
+pub(super) fn sky_brightness(given: Option<f64>, settings: &Settings) -> Result<SurfaceBrightness, Failure> {
+    let mag = given.unwrap_or(settings.sky_brightness_mag_arcsec2);
+    within("--sky-brightness", mag, 10.0, 25.0).map(SurfaceBrightness)
 }
 
 fn style(arguments: &Arguments) -> Result<Style, Failure> {

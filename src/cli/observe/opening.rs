@@ -1,16 +1,15 @@
 //! Everything that is opened before the session begins: settings, site, time, mount, projector, instrument.
 
-use std::fs;
 use std::path::PathBuf;
 
 use super::Arguments;
 use super::clock::Clock;
 use super::projection::Projection;
 use crate::app::model::Opening;
-use crate::cli::Failure;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::{self, State};
+use crate::cli::{Failure, overlay, photographs};
 use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{self, Ours};
 use crate::hw::mount::link::{self, Opener, Pump};
@@ -21,7 +20,6 @@ use crate::hw::port::Port;
 use crate::hw::projector;
 use crate::overlay::style::Eye;
 use crate::sky::field::Nudge;
-use crate::sky::optics::Instrument;
 use crate::sky::site::Site;
 use crate::sky::sun;
 use crate::sky::time::Utc;
@@ -57,14 +55,20 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let begin = begin(arguments, simulated, site);
     let clock = if arguments.fast { Clock::made(begin) } else { Clock::real(begin) };
     let ours = Ours { utc_at_start: clock.utc_at_start(), site };
-    let instrument = instrument(settings.instrument)?;
+    let instrument = overlay::instrument(settings.instrument.as_deref(), None)?;
     let opener = opener(&mount, site, ours.utc_at_start)?;
     let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
-    let projector = projector::open(&address, projector::Flip::default()).map_err(Failure::failed)?;
+    let flip = projector::Flip { horizontal: instrument.projector.must_mirror(), ..projector::Flip::default() };
+    let projector = projector::open(&address, flip).map_err(Failure::failed)?;
     let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), ..Eye::default() };
 
     let state_path = if simulated { None } else { state::default_path() };
     let (state, notice) = state_path.as_ref().map_or((State::default(), None), |path| State::load(path, &mut Files));
+    let (photographs, mut notices) = match &settings.photographs {
+        Some(folder) => photographs::read_folder(folder)?,
+        None => Default::default(),
+    };
+    notices.extend(notice);
     let (east, north) = state.nudge.angles();
     let opening = Opening {
         instrument,
@@ -78,8 +82,8 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         projector: address.to_string(),
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
-    let projection = Projection::new(projector, Vec::new(), eye);
-    Ok(Opened { opening, clock, ours, pump, projection, state_path, notices: notice.into_iter().collect() })
+    let projection = Projection::new(projector, photographs, eye);
+    Ok(Opened { opening, clock, ours, pump, projection, state_path, notices })
 }
 
 /// When the session begins: as stated; with a simulated telescope in the middle of the coming night, so that a newcomer at
@@ -87,15 +91,6 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
 fn begin(arguments: &Arguments, simulated: bool, site: Option<Site>) -> Option<Utc> {
     let now = Clock::real(None).utc_at_start();
     arguments.time.or_else(|| site.filter(|_| simulated).map(|site| sun::next_midnight(now, &site)))
-}
-
-/// Telescope and eyepieces of a file, or the thesis' own.
-fn instrument(path: Option<PathBuf>) -> Result<Instrument, Failure> {
-    let Some(path) = path else { return Ok(Instrument::default()) };
-    let text = fs::read_to_string(&path).map_err(|error| {
-        Failure::Failed(format!("{} cannot be read: {error}; check the name in the settings", path.display()))
-    })?;
-    Instrument::from_toml(&text).map_err(|error| Failure::Asked(format!("{}: {error}", path.display())))
 }
 
 /// Opens the line. The first opening happens here, so that a wrong name is told before the screen is taken; from then on a
