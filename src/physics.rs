@@ -1,4 +1,8 @@
-//! What nature does: the bending of light by air.
+//! What nature does: air, its scattering, and the bending of light by it.
 
-/// Mean refraction by the air, and its inverse.
+/// The air: its refractive index, and what it is like at each height.
+pub mod air;
+/// Scattering by the molecules of the air.
+pub mod rayleigh;
+/// How air bends light: mean refraction, and rays traced through layers.
 pub mod refraction;

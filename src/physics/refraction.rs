@@ -2,6 +2,9 @@
 
 use crate::units::Angle;
 
+/// The path of light through layered air.
+pub mod ray;
+
 /// The air at the telescope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
