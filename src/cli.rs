@@ -22,12 +22,16 @@ pub mod optics;
 pub mod overlay;
 /// A folder of the observer's photographs.
 pub mod photographs;
+/// What the methods cost and what errors they make.
+pub mod report;
 /// The observer's settings, and what is remembered between sessions.
 pub mod settings;
 /// Devices that are not there.
 pub mod simulate;
 /// Where things are, and what is in a field.
 pub mod sky;
+/// The low Sun.
+pub mod sun;
 /// The process that stops the mount if the session dies.
 pub mod supervise;
 
@@ -75,6 +79,10 @@ enum Command {
     Overlay(Box<overlay::Arguments>),
     /// Say what the telescope shows with each eyepiece
     Optics(optics::Arguments),
+    /// The low Sun through real air: single rays, the index of air
+    Sun(sun::Arguments),
+    /// What the methods cost and what errors they make, measured here and now
+    Report(report::Arguments),
     /// Print the completions of a shell
     Completions {
         /// The shell to complete in
@@ -112,6 +120,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
+        Some(Command::Sun(arguments)) => sun::run(&arguments),
+        Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "scotopic", &mut script);

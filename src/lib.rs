@@ -13,16 +13,18 @@ pub mod app;
 pub mod cli;
 /// Bytes and devices: the mount and the projector, each a pure protocol, a thin adapter and a simulator.
 pub mod hw;
-/// Seeded random streams.
+/// Integrals, roots, steps of differential equations, seeded random streams.
 pub mod numerics;
 /// What is in the field, drawn as the picture that the projector shows.
 pub mod overlay;
-/// What nature does: the bending of light by air.
+/// What nature does: air, its scattering, and the bending of light by it.
 pub mod physics;
 /// An image in memory, linear light.
 pub mod picture;
 /// One frame of data from the mount to the eyepiece: the page to read.
 pub mod pipeline;
+/// What methods cost and what errors they make, measured.
+pub mod report;
 /// May the telescope move there: the Sun, the limits, the turns of the cable.
 pub mod safety;
 /// Where things are: time, site, coordinates, catalogues, optics, the field of view.

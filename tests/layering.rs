@@ -13,6 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("numerics", &["units"]),
     ("picture", &["units"]),
     ("physics", &["units", "numerics", "picture"]),
+    ("report", &["units", "numerics", "picture", "physics"]),
     ("sky", &["units", "numerics", "physics"]),
     ("overlay", &["units", "picture", "physics", "sky"]),
     ("hw", &["units", "numerics", "picture", "sky"]),

@@ -21,7 +21,8 @@ pub fn cross_section_m2(wavelength_nm: f64, co2_ppm: f64) -> f64 {
     let lorentz = (n * n - 1.0) / (n * n + 2.0);
     let wavelength_m = wavelength_nm * 1e-9;
     let per_volume = lorentz / MOLECULES_PER_M3;
-    24.0 * std::f64::consts::PI.powi(3) * per_volume * per_volume / wavelength_m.powi(4) * king_factor(wavelength_nm, co2_ppm)
+    24.0 * std::f64::consts::PI.powi(3) * per_volume * per_volume / wavelength_m.powi(4)
+        * king_factor(wavelength_nm, co2_ppm)
 }
 
 /// Molecules in a cubic metre of air at 288.15 K and 1013.25 hPa.

@@ -25,7 +25,9 @@ pub enum AirError {
     #[error("carbon dioxide {0} ppm: give 0 to 2000")]
     Co2(f64),
     /// At this temperature so much vapour does not fit under this pressure: it boils.
-    #[error("{humidity_percent} % humidity at {temperature_k} K needs more vapour than {pressure_pa} Pa hold: lower it")]
+    #[error(
+        "{humidity_percent} % humidity at {temperature_k} K needs more vapour than {pressure_pa} Pa hold: lower it"
+    )]
     Boils {
         /// Relative humidity, percent.
         humidity_percent: f64,
@@ -117,7 +119,8 @@ pub fn compressibility(parcel: &Parcel) -> f64 {
     let Parcel { temperature_k, pressure_pa, vapour: x } = *parcel;
     let t = temperature_k - 273.15;
     let ratio = pressure_pa / temperature_k;
-    1.0 - ratio * ((A0 + t * (A1 + t * A2)) + (B0 + B1 * t) * x + (C0 + C1 * t) * x * x) + ratio * ratio * (D + E * x * x)
+    1.0 - ratio * ((A0 + t * (A1 + t * A2)) + (B0 + B1 * t) * x + (C0 + C1 * t) * x * x)
+        + ratio * ratio * (D + E * x * x)
 }
 
 const A0: f64 = 1.581_23e-6;
@@ -173,7 +176,10 @@ impl Dispersion {
             let reference = Parcel { temperature_k: t_k, pressure_pa: p_pa, vapour: x };
             t_k * compressibility(&reference) / p_pa
         };
-        Ok(Dispersion { dry: dry * per_density(288.15, 101_325.0, 0.0), vapour: vapour * per_density(293.15, 1333.0, 1.0) })
+        Ok(Dispersion {
+            dry: dry * per_density(288.15, 101_325.0, 0.0),
+            vapour: vapour * per_density(293.15, 1333.0, 1.0),
+        })
     }
 
     /// Refractivity n - 1 of a parcel.

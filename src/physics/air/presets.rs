@@ -55,7 +55,10 @@ mod tests {
     fn every_name_gives_air_with_a_source_and_an_eye_above_the_ground() {
         for name in NAMES {
             let preset = named(name).unwrap().unwrap();
-            assert!(!preset.name.is_empty() && !preset.source.is_empty() && preset.observer_height_m > Some(0.0), "{name}");
+            assert!(
+                !preset.name.is_empty() && !preset.source.is_empty() && preset.observer_height_m > Some(0.0),
+                "{name}"
+            );
             let surface = preset.profile.parcel(0.0);
             assert!((surface.pressure_pa - 101_325.0).abs() < 1e-6, "{name}");
             assert!((280.0..330.0).contains(&surface.temperature_k), "{name}");

@@ -158,7 +158,9 @@ pub fn from_csv(text: &str) -> Result<Profile, ReadError> {
     for (line, found) in lines {
         let numbers: Result<Vec<f64>, _> = found.split(',').map(|field| field.trim().parse()).collect();
         match numbers.as_deref() {
-            Ok(&[height_m, temperature_k]) if columns == 2 => rows.push(Row { height_m, temperature_k, humidity_percent: 0.0 }),
+            Ok(&[height_m, temperature_k]) if columns == 2 => {
+                rows.push(Row { height_m, temperature_k, humidity_percent: 0.0 });
+            }
             Ok(&[height_m, temperature_k, humidity_percent]) if columns == 3 => {
                 rows.push(Row { height_m, temperature_k, humidity_percent });
             }
@@ -174,7 +176,8 @@ mod tests {
 
     #[test]
     fn csv_with_humidity_and_remarks_is_read() {
-        let air = from_csv("# mine\nheight_m,temperature_k,relative_humidity_percent\n10,288,80\n\n1000,281.5,20\n").unwrap();
+        let air =
+            from_csv("# mine\nheight_m,temperature_k,relative_humidity_percent\n10,288,80\n\n1000,281.5,20\n").unwrap();
         assert!((air.parcel(0.0).temperature_k - 288.0).abs() < 1e-12, "isothermal below the first row");
         assert!((air.parcel(5000.0).temperature_k - 281.5).abs() < 1e-12, "isothermal above the last");
         assert!(air.parcel(10.0).vapour > air.parcel(1000.0).vapour);
@@ -199,7 +202,8 @@ mod tests {
 
     #[test]
     fn toml_says_temperature_once_a_row() {
-        let twice = "[[row]]\nheight_m=0\ntemperature_k=288\ngradient_k_per_m=1\n[[row]]\nheight_m=1\ntemperature_k=289\n";
+        let twice =
+            "[[row]]\nheight_m=0\ntemperature_k=288\ngradient_k_per_m=1\n[[row]]\nheight_m=1\ntemperature_k=289\n";
         assert_eq!(from_toml(twice), Err(ReadError::Temperature { row: 2 }));
         let never = "[[row]]\nheight_m=0\ntemperature_k=288\n[[row]]\nheight_m=1\n";
         assert_eq!(from_toml(never), Err(ReadError::Temperature { row: 2 }));

@@ -45,7 +45,8 @@ pub fn rounded(rows: &[Row], deviation_m: f64) -> Result<Vec<Row>, ProfileError>
         .into_iter()
         .map(|height_m| {
             let mut row = line(rows, height_m);
-            row.temperature_k += kinks.iter().map(|&(at, change)| change * bend(height_m - at, deviation_m)).sum::<f64>();
+            row.temperature_k +=
+                kinks.iter().map(|&(at, change)| change * bend(height_m - at, deviation_m)).sum::<f64>();
             row
         })
         .collect())
@@ -83,8 +84,8 @@ fn bend(distance_m: f64, deviation_m: f64) -> f64 {
 /// Source: Abramowitz & Stegun (1964), eq. 26.2.17.
 fn upper_tail(u: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.231_641_9 * u);
-    let series = t
-        * (0.319_381_530 + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
+    let series =
+        t * (0.319_381_530 + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
     (-0.5 * u * u).exp() / std::f64::consts::TAU.sqrt() * series
 }
 

@@ -51,8 +51,14 @@ mod tests {
     #[test]
     fn base_pressures_are_those_printed() {
         let us76 = profile();
-        let printed =
-            [(11e3, 22_632.06), (20e3, 5474.889), (32e3, 868.0187), (47e3, 110.9063), (51e3, 66.93887), (71e3, 3.956_420)];
+        let printed = [
+            (11e3, 22_632.06),
+            (20e3, 5474.889),
+            (32e3, 868.0187),
+            (47e3, 110.9063),
+            (51e3, 66.93887),
+            (71e3, 3.956_420),
+        ];
         for (h, pressure) in printed {
             let z = R0_M * h / (R0_M - h);
             let got = us76.parcel(z).pressure_pa;
@@ -66,7 +72,10 @@ mod tests {
         let us76 = profile();
         for (z, t, p) in [(30e3, 226.509, 1197.0), (50e3, 270.650, 79.779)] {
             let parcel = us76.parcel(z);
-            assert!((parcel.temperature_k - t).abs() < 6e-4 && (parcel.pressure_pa / p - 1.0).abs() < 1e-4, "{parcel:?}");
+            assert!(
+                (parcel.temperature_k - t).abs() < 6e-4 && (parcel.pressure_pa / p - 1.0).abs() < 1e-4,
+                "{parcel:?}"
+            );
         }
     }
 }

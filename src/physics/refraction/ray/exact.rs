@@ -86,8 +86,9 @@ const FINEST: f64 = 1e-12;
 /// The most panels in a piece.
 const MOST_PANELS: usize = 400;
 
-/// Below this thickness (metres) y is taken as linear, because its rounding would show.
-const THIN_M: f64 = 1e-4;
+/// Nearer than this (metres) to the end with the smaller y, y is summed up from its slopes, because there the rounding of
+/// the index would show.
+const NEAR_M: f64 = 0.02;
 
 /// Over pieces thinner than this (metres) the air hardly changes.
 const EVEN_M: f64 = 300.0;
@@ -172,7 +173,8 @@ impl Prepared<'_> {
     /// Follows the ray from the eye one way.
     fn leg(&self, ray: &Invariant, start: usize, upwards: bool, effort: &mut Effort) -> Leg {
         let pieces = self.medium.pieces();
-        let mut leg = Leg { sums: [0.0; SUMS], error: 0.0, turn_m: None, crossings: Vec::with_capacity(pieces.len() + 1) };
+        let mut leg =
+            Leg { sums: [0.0; SUMS], error: 0.0, turn_m: None, crossings: Vec::with_capacity(pieces.len() + 1) };
         let (mut at, mut index) = (ray.z0, start);
         // Going down from a border, the piece below is the first.
         if !upwards && at <= pieces[start].low_m {
@@ -207,14 +209,26 @@ impl Prepared<'_> {
 
     /// Adds the integrals over a part of a piece.
     #[expect(clippy::too_many_arguments, reason = "each is one plain thing, and they meet only here")]
-    fn cross(&self, ray: &Invariant, piece: &Piece, from: f64, to: f64, turns: bool, leg: &mut Leg, effort: &mut Effort) {
+    fn cross(
+        &self,
+        ray: &Invariant,
+        piece: &Piece,
+        from: f64,
+        to: f64,
+        turns: bool,
+        leg: &mut Leg,
+        effort: &mut Effort,
+    ) {
         if from == to {
             return;
         }
         // Choose the end from which the variable runs: that with the smaller y.
         let end = |z: f64| {
             let local = self.medium.at(piece.layer, z);
-            (ray.excess(z, local.refractivity).max(0.0), 1.0 + local.refractivity + (self.medium.earth_radius_m + z) * local.slope)
+            (
+                ray.excess(z, local.refractivity).max(0.0),
+                1.0 + local.refractivity + (self.medium.earth_radius_m + z) * local.slope,
+            )
         };
         effort.evaluations += 2;
         let (mut base, mut slow) = (to, end(to));
@@ -232,7 +246,6 @@ impl Prepared<'_> {
         let bent = delta < 100.0 * length;
         let root = if bent { delta.sqrt() } else { 0.0 };
         let most = if bent { length / (root + (delta + length).sqrt()) } else { length };
-        let thin = length < THIN_M;
 
         let mut evaluations = 0;
         let mut integrand = |v: f64| {
@@ -240,7 +253,12 @@ impl Prepared<'_> {
             let (distance, stretch) = if bent { (v * (2.0 * root + v), 2.0 * (root + v)) } else { (v, 1.0) };
             let z = base + sign * distance;
             let local = self.medium.at(piece.layer, z);
-            let y = if thin { slow.0 + slow.1.abs() * distance } else { ray.excess(z, local.refractivity) };
+            let rise = 1.0 + local.refractivity + (self.medium.earth_radius_m + z) * local.slope;
+            let y = if distance < NEAR_M {
+                slow.0 + 0.5 * (slow.1.abs() + rise.abs()) * distance
+            } else {
+                ray.excess(z, local.refractivity)
+            };
             self.integrand(ray, &local, z, y, stretch)
         };
 

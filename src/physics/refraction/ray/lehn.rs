@@ -163,8 +163,11 @@ impl Prepared<'_> {
         let last = |samples: &[(f64, f64)]| samples.last().map_or(0.0, |sample| sample.1);
         let total: f64 = sums.iter().map(|samples| last(samples)).sum();
         let mut borders = vec![0.0];
+        // Thin pieces are those that make mirages: each gets a few layers whatever its share.
+        let few = (layers / (2 * pieces.len())).clamp(1, 16);
+        let rest = layers.saturating_sub(few * pieces.len()) as f64;
         for (piece, samples) in pieces.iter().zip(&sums) {
-            let parts = (layers as f64 * last(samples) / total).round().max(1.0) as usize;
+            let parts = few + (rest * last(samples) / total).round() as usize;
             for part in 1..parts {
                 let wanted = last(samples) * part as f64 / parts as f64;
                 let above = samples.partition_point(|sample| sample.1 < wanted).clamp(1, SAMPLES);
@@ -186,7 +189,8 @@ impl Prepared<'_> {
                 let (low_m, high_m) = (pair[0], pair[1]);
                 let middle_m = 0.5 * (low_m + high_m);
                 let [low, middle, high] = [low_m, middle_m, high_m].map(|z| self.medium.at(profile.layer_at(z), z));
-                let curvature = -(high.refractivity - low.refractivity) / (1.0 + middle.refractivity) / (high_m - low_m);
+                let curvature =
+                    -(high.refractivity - low.refractivity) / (1.0 + middle.refractivity) / (high_m - low_m);
                 // Simpson's mean of what the molecules do; haze and ozone as they are in the middle.
                 let mut extinction = self.medium.extinctions(&middle, middle_m);
                 extinction.rayleigh = (low.rayleigh_per_m + 4.0 * middle.rayleigh_per_m + high.rayleigh_per_m) / 6.0;

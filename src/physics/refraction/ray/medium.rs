@@ -25,7 +25,7 @@ pub enum MediumError {
     #[error("radius of the Earth {0} m: give 1000 to 1e12")]
     Radius(f64),
     /// The top of the air.
-    #[error("top of the air {top_m} m: give more than 0 and at most {highest_m} m, where this profile ends")]
+    #[error("top of the air {top_m} m: give more than 0 and at most {highest_m:.0} m, where this profile ends")]
     Top {
         /// What was asked, metres.
         top_m: f64,
@@ -77,7 +77,12 @@ impl<'a> Medium<'a> {
     ///
     /// # Errors
     /// The wavelength lies outside 300 to 1700 nm, or radius or top are none.
-    pub fn new(profile: &'a Profile, wavelength_nm: f64, earth_radius_m: f64, top_m: f64) -> Result<Medium<'a>, MediumError> {
+    pub fn new(
+        profile: &'a Profile,
+        wavelength_nm: f64,
+        earth_radius_m: f64,
+        top_m: f64,
+    ) -> Result<Medium<'a>, MediumError> {
         let dispersion = Dispersion::new(wavelength_nm, profile.co2_ppm)?;
         if !(1e3..=1e12).contains(&earth_radius_m) {
             return Err(MediumError::Radius(earth_radius_m));
@@ -182,7 +187,7 @@ impl<'a> Medium<'a> {
     pub(super) fn admit(&self, launch: &Launch) -> Result<(), RayError> {
         let degrees = launch.apparent_altitude.to_degrees();
         // A hair above 90 for the rounding of degrees to radians and back.
-        if !(degrees.abs() <= 90.0 + 1e-12) {
+        if degrees.is_nan() || degrees.abs() > 90.0 + 1e-12 {
             return Err(RayError::Altitude(degrees));
         }
         if !(launch.height_m >= 0.0 && launch.height_m < self.top_m) {

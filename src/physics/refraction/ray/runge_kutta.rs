@@ -41,8 +41,11 @@ const SHARE: f64 = 0.1;
 /// An error in height (metres) for each radian of error in altitude that is as bad.
 const HEIGHT_M: f64 = 1e4;
 
-/// The most steps.
-const MOST_STEPS: usize = 200_000;
+/// An error in optical depth (as a share of one more than the depth) for each radian of error in altitude that is as bad.
+const DEPTH: f64 = 2e3;
+
+/// The most steps, and the most for each piece of the air.
+const MOST_STEPS: (usize, usize) = (20_000, 20);
 
 /// Nearer to a border than this (metres) is on it.
 const ON_BORDER_M: f64 = 1e-9;
@@ -50,19 +53,7 @@ const ON_BORDER_M: f64 = 1e-9;
 impl Tracer for Prepared<'_> {
     fn trace(&self, launch: &Launch) -> Result<Ray, RayError> {
         self.medium.admit(launch)?;
-        let altitude = launch.apparent_altitude.to_radians();
-        let mut march = March {
-            medium: self.medium,
-            enough: self.tolerance * SHARE,
-            state: [launch.height_m, altitude, 0.0, 0.0, 0.0, 0.0],
-            index: self.medium.piece_at(launch.height_m),
-            length: 1e3,
-            believed: 0.0,
-            steps: 0,
-            evaluations: 0,
-            turns: 0,
-            tangent_height_m: None,
-        };
+        let mut march = March::new(self.medium, self.tolerance, launch.height_m, launch.apparent_altitude);
         let mut crossings = Vec::with_capacity(self.medium.pieces().len() + 1);
         let mut path_length_m = 0.0;
         let outcome = loop {
@@ -101,6 +92,7 @@ struct March<'a> {
     index: usize,
     /// The next step, metres.
     length: f64,
+    most_steps: usize,
     believed: f64,
     steps: usize,
     evaluations: usize,
@@ -108,7 +100,23 @@ struct March<'a> {
     tangent_height_m: Option<f64>,
 }
 
-impl March<'_> {
+impl<'a> March<'a> {
+    fn new(medium: &'a Medium<'a>, tolerance: f64, height_m: f64, altitude: Angle) -> March<'a> {
+        March {
+            medium,
+            enough: tolerance * SHARE,
+            state: [height_m, altitude.to_radians(), 0.0, 0.0, 0.0, 0.0],
+            index: medium.piece_at(height_m),
+            length: 1e3,
+            most_steps: MOST_STEPS.0 + MOST_STEPS.1 * medium.pieces().len(),
+            believed: 0.0,
+            steps: 0,
+            evaluations: 0,
+            turns: 0,
+            tangent_height_m: None,
+        }
+    }
+
     /// Goes on to the next border of the piece it is in.
     fn cross(&mut self) -> (Crossing, Option<Outcome>) {
         let piece = self.medium.pieces()[self.index];
@@ -120,7 +128,7 @@ impl March<'_> {
             if let Some(end) = self.leave(&piece, &slope) {
                 break end;
             }
-            if self.turns >= 2 || self.steps >= MOST_STEPS {
+            if self.turns >= 2 || self.steps >= self.most_steps {
                 break Some(Outcome::Trapped);
             }
             let (gone, taken) = self.advance(&piece, &slope);
@@ -182,7 +190,13 @@ impl March<'_> {
         loop {
             let length = self.length;
             let taken = self.step(piece, slope, length);
-            let wrong = taken.error[2].abs().max(taken.error[1].abs()).max(taken.error[0].abs() / HEIGHT_M);
+            let depths = (3..6).map(|i| taken.error[i].abs() / (1.0 + self.state[i]) / DEPTH).fold(0.0, f64::max);
+            let wrong = taken.error[2].abs().max(taken.error[1].abs()).max(taken.error[0].abs() / HEIGHT_M).max(depths);
+            // Far beyond its layer a formula may give no number: too long a step.
+            if !taken.state.iter().chain(&taken.error).all(|x| x.is_finite()) {
+                self.length = length * 0.2;
+                continue;
+            }
             // Order 5 with an estimate of order 4: the next length aims at 0.9 of what is allowed.
             let factor = (0.9 * (self.enough / wrong.max(1e-300)).powf(0.2)).clamp(0.2, 5.0);
             if wrong > self.enough && length > 1e-6 {
@@ -262,12 +276,31 @@ fn derivative(medium: &Medium<'_>, layer: usize, state: &State) -> State {
     let (sin, cos) = state[1].sin_cos();
     let bend = -cos * local.slope / (1.0 + local.refractivity);
     let depths = medium.extinctions(&local, state[0]);
-    [
-        sin,
-        cos / (medium.earth_radius_m + state[0]) - bend,
-        bend,
-        depths.rayleigh,
-        depths.aerosol,
-        depths.ozone,
-    ]
+    [sin, cos / (medium.earth_radius_m + state[0]) - bend, bend, depths.rayleigh, depths.aerosol, depths.ozone]
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::physics::air::presets;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+
+        /// The method does not know of the invariant n r cos a, and keeps it at every border.
+        #[test]
+        fn the_invariant_holds_along_every_ray(arcmin in -10.0..5000.0f64, which in 0..presets::NAMES.len(), nm in 350.0..800.0f64) {
+            let air = presets::named(presets::NAMES[which]).unwrap().unwrap();
+            let medium = Medium::new(&air.profile, nm, 6_371_000.0, 1e5).unwrap();
+            let mut march = March::new(&medium, 1e-9, air.observer_height_m.unwrap(), Angle::arcminutes(arcmin));
+            let invariant = |state: &State| (1.0 + medium.refractivity(state[0]).0) * (6_371_000.0 + state[0]) * state[1].cos();
+            let at_eye = invariant(&march.state);
+            while march.cross().1.is_none() {
+                // A millimetre in 6371 km.
+                prop_assert!((invariant(&march.state) - at_eye).abs() < 1e-3, "{:?}", march.state);
+            }
+        }
+    }
 }

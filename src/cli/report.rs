@@ -1,0 +1,111 @@
+//! `scotopic report`: what the methods cost and what errors they make, measured here and now.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, Subcommand};
+use serde_json::json;
+
+use super::{Failure, answer, answer_json};
+use crate::report::refraction::{agreement, airs, mediums, study};
+use crate::report::{Measurement, Study, measure, plot, stability, table};
+
+/// Which report.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = "Examples:\n  \
+    scotopic report refraction                   the table\n  \
+    scotopic report refraction --out report      and report/refraction.svg, report/refraction.json\n  \
+    scotopic report stability                    what held, under extreme air and rays")]
+pub struct Arguments {
+    #[command(subcommand)]
+    report: Report,
+}
+
+#[derive(Debug, Clone, Subcommand)]
+enum Report {
+    /// Error against run time of every method that traces rays
+    Refraction(Output),
+    /// Extreme air and extreme rays: what held
+    Stability {
+        /// Answer as JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Where a report goes.
+#[derive(Debug, Clone, Args)]
+struct Output {
+    /// Folder for the plot (SVG) and the measurements (JSON); made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Answer as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Measures and prints.
+///
+/// # Errors
+/// A file could not be written, or an extreme case did not hold.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.report {
+        Report::Refraction(output) => refraction(output),
+        Report::Stability { json } => extremes(*json),
+    }
+}
+
+fn refraction(output: &Output) -> Result<(), Failure> {
+    let agreement = agreement().map_err(Failure::failed)?;
+    let airs = airs().map_err(Failure::failed)?;
+    let mediums = mediums(&airs).map_err(Failure::failed)?;
+    let study = study(&mediums).map_err(Failure::failed)?;
+    let measurements = timed(&study);
+    if let Some(folder) = &output.out {
+        write(folder, "refraction", &study, &measurements)?;
+    }
+    if output.json {
+        return answer_json(&json!({ "agreement": agreement, "measurements": measurements }));
+    }
+    answer(&format!(
+        "{}\nThe exact method at 0.001\" against the tables of others:\n  \
+         standard atmosphere   worst {:.6}\" of {} values\n  \
+         mirages               worst {:.6}\" of {} values",
+        table(&study, &measurements),
+        agreement.standard_worst_arcsec,
+        agreement.standard_values,
+        agreement.mirage_worst_arcsec,
+        agreement.mirage_values,
+    ))
+}
+
+fn timed(study: &Study<'_>) -> Vec<Measurement> {
+    let begin = Instant::now();
+    measure(study, &|| begin.elapsed())
+}
+
+/// Writes a study's plot and numbers into a folder.
+fn write(folder: &Path, name: &str, study: &Study<'_>, measurements: &[Measurement]) -> Result<(), Failure> {
+    let svg = plot::svg(study, measurements).map_err(Failure::failed)?;
+    let numbers = serde_json::to_string_pretty(measurements).map_err(Failure::failed)?;
+    std::fs::create_dir_all(folder).map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
+    for (ending, text) in [("svg", svg), ("json", numbers)] {
+        let path = folder.join(name).with_extension(ending);
+        std::fs::write(&path, text).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(())
+}
+
+fn extremes(json: bool) -> Result<(), Failure> {
+    let extremes = stability::run();
+    if json {
+        answer_json(&extremes)?;
+    } else {
+        answer(stability::table(&extremes).trim_end())?;
+    }
+    match extremes.iter().filter(|extreme| !extreme.held).count() {
+        0 => Ok(()),
+        failed => Err(Failure::failed(format!("{failed} of {} extreme cases did not hold", extremes.len()))),
+    }
+}

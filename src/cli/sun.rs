@@ -1,0 +1,38 @@
+//! `scotopic sun`: the low Sun, and what its picture is made of.
+
+use clap::{Args, Subcommand};
+
+use super::Failure;
+
+/// The refractive index of air.
+pub mod air;
+/// The atmosphere that a name or a file stands for.
+pub mod atmosphere;
+/// One ray.
+pub mod trace;
+
+/// What is asked of the low Sun.
+#[derive(Debug, Clone, Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Clone, Subcommand)]
+enum Command {
+    /// The refractive index of moist air (Ciddor 1996)
+    Air(air::Arguments),
+    /// Follow one ray from the eye through the air
+    Trace(trace::Arguments),
+}
+
+/// Answers it.
+///
+/// # Errors
+/// A sentence that says what is wrong and what to do.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Air(arguments) => air::run(arguments),
+        Command::Trace(arguments) => trace::run(arguments),
+    }
+}
