@@ -17,7 +17,7 @@ pub mod hw;
 pub mod numerics;
 /// What is in the field, drawn as the picture that the projector shows.
 pub mod overlay;
-/// What nature does: air, its scattering, and the bending of light by it.
+/// What nature does: air, what its molecules and particles do to light, and the bending of light by it.
 pub mod physics;
 /// An image in memory, linear light.
 pub mod picture;

@@ -1,7 +1,11 @@
-//! What nature does: air, its scattering, and the bending of light by it.
+//! What nature does: air, what its molecules and particles do to light, and the bending of light by it.
 
+/// Particles in the air: size distributions, Mie's series, the climates of OPAC.
+pub mod aerosol;
 /// The air: its refractive index, and what it is like at each height.
 pub mod air;
+/// Absorption by ozone.
+pub mod ozone;
 /// Scattering by the molecules of the air.
 pub mod rayleigh;
 /// How air bends light: mean refraction, and rays traced through layers.

@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+/// What particles take from light.
+pub mod aerosol;
 /// A study as a plot.
 pub mod plot;
 /// The refraction of single rays by every method.

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::{Failure, answer, answer_json};
 use crate::report::refraction::{agreement, airs, mediums, study};
-use crate::report::{Measurement, Study, measure, plot, stability, table};
+use crate::report::{Measurement, Study, aerosol, measure, plot, stability, table};
 
 /// Which report.
 #[derive(Debug, Clone, Args)]
@@ -25,6 +25,8 @@ pub struct Arguments {
 enum Report {
     /// Error against run time of every method that traces rays
     Refraction(Output),
+    /// Error against run time of what particles take from light, and the published values beside ours
+    Aerosol(Output),
     /// Extreme air and extreme rays: what held
     Stability {
         /// Answer as JSON
@@ -51,6 +53,7 @@ struct Output {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.report {
         Report::Refraction(output) => refraction(output),
+        Report::Aerosol(output) => particles(output),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -79,6 +82,21 @@ fn refraction(output: &Output) -> Result<(), Failure> {
     ))
 }
 
+fn particles(output: &Output) -> Result<(), Failure> {
+    let agreement = aerosol::agreement().map_err(Failure::failed)?;
+    let study = aerosol::study().map_err(Failure::failed)?;
+    let measurements = timed(&study);
+    let begin = Instant::now();
+    let costs = aerosol::costs(&|| begin.elapsed()).map_err(Failure::failed)?;
+    if let Some(folder) = &output.out {
+        write(folder, "aerosol", &study, &measurements)?;
+    }
+    if output.json {
+        return answer_json(&json!({ "agreement": agreement, "costs": costs, "measurements": measurements }));
+    }
+    answer(&format!("{}\n{}", aerosol::tables(&agreement, &costs), table(&study, &measurements).trim_end()))
+}
+
 fn timed(study: &Study<'_>) -> Vec<Measurement> {
     let begin = Instant::now();
     measure(study, &|| begin.elapsed())
@@ -98,7 +116,8 @@ fn write(folder: &Path, name: &str, study: &Study<'_>, measurements: &[Measureme
 }
 
 fn extremes(json: bool) -> Result<(), Failure> {
-    let extremes = stability::run();
+    let mut extremes = stability::run();
+    extremes.extend(aerosol::extremes());
     if json {
         answer_json(&extremes)?;
     } else {

@@ -4,6 +4,8 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
+/// What particles in the air do to light.
+pub mod aerosol;
 /// The refractive index of air.
 pub mod air;
 /// The atmosphere that a name or a file stands for.
@@ -20,6 +22,8 @@ pub struct Arguments {
 
 #[derive(Debug, Clone, Subcommand)]
 enum Command {
+    /// What the particles in the air of a climate do to light (OPAC)
+    Aerosol(aerosol::Arguments),
     /// The refractive index of moist air (Ciddor 1996)
     Air(air::Arguments),
     /// Follow one ray from the eye through the air
@@ -32,6 +36,7 @@ enum Command {
 /// A sentence that says what is wrong and what to do.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
+        Command::Aerosol(arguments) => aerosol::run(arguments),
         Command::Air(arguments) => air::run(arguments),
         Command::Trace(arguments) => trace::run(arguments),
     }

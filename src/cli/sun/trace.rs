@@ -6,14 +6,21 @@ use serde_json::json;
 
 use super::atmosphere;
 use crate::cli::{Failure, answer, answer_json};
+use crate::physics::aerosol::climate::Climate;
+use crate::physics::aerosol::components::Humidity;
+use crate::physics::ozone::OzoneLayer;
 use crate::physics::refraction::ray::{self, Launch, Medium, Ray};
 use crate::units::Angle;
+
+/// To this fraction particles are computed: the tables they rest on have three digits.
+const PARTICLES_TOLERANCE: f64 = 1e-3;
 
 /// The ray, the air, and the method.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = "Examples:\n  \
     scotopic sun trace                                                     the horizon, through the standard atmosphere\n  \
     scotopic sun trace --apparent-altitude-arcmin -4.38 --atmosphere omega\n  \
+    scotopic sun trace --climate maritime-polluted --humidity 70 --ozone-du 300\n  \
     scotopic sun trace --atmosphere my-air.toml --method lehn --layers 300 --json\n\n\
     A profile is TOML, or CSV with the columns height_m,temperature_k[,relative_humidity_percent].\n\
     For a ray that ends on the ground or is trapped, the numbers are those of the path that was followed.")]
@@ -36,6 +43,15 @@ pub struct Arguments {
     /// Where the air ends, kilometres
     #[arg(long, value_name = "KM", default_value_t = 100.0, allow_negative_numbers = true)]
     top_km: f64,
+    /// Particles in the air: a climate of `scotopic sun aerosol` [default: none]
+    #[arg(long, value_name = "NAME")]
+    climate: Option<Climate>,
+    /// Relative humidity in which the climate's particles grow, percent (0 to 99)
+    #[arg(long, value_name = "PERCENT", default_value_t = 80.0, requires = "climate", allow_negative_numbers = true)]
+    humidity: f64,
+    /// Ozone over the observer, Dobson units (the Earth has about 300)
+    #[arg(long, value_name = "DU", default_value_t = 0.0, allow_negative_numbers = true)]
+    ozone_du: f64,
     /// How the ray is traced
     #[arg(long, value_name = "METHOD", default_value = "exact", value_parser = PossibleValuesParser::new(ray::METHODS))]
     method: String,
@@ -56,8 +72,26 @@ pub struct Arguments {
 /// The air, the ray or the method cannot be so; the sentence says how they can.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let air = atmosphere::open(&arguments.atmosphere)?;
-    let medium = Medium::new(&air.profile, arguments.wavelength_nm, arguments.earth_radius_m, arguments.top_km * 1e3)
-        .map_err(Failure::asked)?;
+    let nm = arguments.wavelength_nm;
+    let mut medium =
+        Medium::new(&air.profile, nm, arguments.earth_radius_m, arguments.top_km * 1e3).map_err(Failure::asked)?;
+    let particles = match arguments.climate {
+        None => None,
+        Some(climate) => {
+            let humidity = Humidity::percent(arguments.humidity).map_err(Failure::asked)?;
+            Some(climate.column(humidity, nm, PARTICLES_TOLERANCE).map_err(Failure::asked)?)
+        }
+    };
+    if let Some(particles) = &particles {
+        medium = medium.with_aerosol(particles);
+    }
+    let ozone = match arguments.ozone_du {
+        0.0 => None,
+        column_du => Some(OzoneLayer::new(column_du, nm).map_err(Failure::asked)?),
+    };
+    if let Some(ozone) = &ozone {
+        medium = medium.with_ozone(ozone);
+    }
     let launch = Launch {
         apparent_altitude: Angle::arcminutes(arguments.apparent_altitude_arcmin),
         height_m: arguments.observer_height_m.or(air.observer_height_m).unwrap_or(2.0),
@@ -98,7 +132,9 @@ fn in_words(ray: &Ray) -> String {
          true altitude         {:.5}'\n\
          path length           {:.1} m\n\
          tangent height        {tangent}\n\
-         Rayleigh depth        {:.5}",
+         Rayleigh depth        {:.5}\n\
+         aerosol depth         {:.5}\n\
+         ozone depth           {:.5}",
         ray.outcome.word(),
         ray.refraction.to_arcseconds(),
         ray.believed_error.to_arcseconds(),
@@ -106,5 +142,7 @@ fn in_words(ray: &Ray) -> String {
         ray.true_altitude.to_arcminutes(),
         ray.path_length_m,
         ray.depths.rayleigh,
+        ray.depths.aerosol,
+        ray.depths.ozone,
     )
 }
