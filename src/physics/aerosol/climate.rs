@@ -211,7 +211,8 @@ impl Climate {
         mixture(self.constituents(), humidity, wavelength_nm, tolerance)
     }
 
-    /// The same with a number of size intervals (four or more, even) for each component and no plan.
+    /// The same over all sizes with a number of intervals for each component, and no plan: the first power of two times
+    /// [`FEWEST_INTERVALS`] that is not below `intervals`.
     ///
     /// # Errors
     /// The wavelength is outside 300 to 1000 nm.
@@ -221,10 +222,13 @@ impl Climate {
         wavelength_nm: f64,
         intervals: usize,
     ) -> Result<Bulk, AerosolError> {
-        let rules = first_rules(self.constituents(), humidity, wavelength_nm, intervals / 2)?;
-        let halved: Result<Vec<_>, _> =
-            rules.into_iter().map(|(number, rule)| rule.halved().map(|rule| (number, rule))).collect();
-        Ok(sum(&halved?))
+        let mut rules = first_rules(self.constituents(), humidity, wavelength_nm, FEWEST_INTERVALS)?;
+        for (_, rule) in &mut rules {
+            while rule.intervals() < intervals.min(MOST_INTERVALS) {
+                *rule = rule.halved()?;
+            }
+        }
+        Ok(sum(&rules))
     }
 
     /// The whole column above a place of this climate: the mixed layer in air of this humidity, the free troposphere at

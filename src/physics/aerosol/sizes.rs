@@ -14,7 +14,7 @@ pub const LARGEST_EFFICIENCY: f64 = 5.0;
 const FIRST_ERROR: f64 = 0.3;
 
 /// A halving of the step is not believed to lessen the error to less than this: two coarse rules may agree by chance.
-const DOUBT: f64 = 1.0 / 8.0;
+const DOUBT: f64 = 1.0 / 4.0;
 
 /// Spheres that are computed together: neighbours in size.
 const TOGETHER: usize = 4;
@@ -136,7 +136,7 @@ pub enum SizesError {
 ///
 /// by the trapezoid rule in t, where ln r goes from one end of the window to the other as t^3 (10 - 15 t + 6 t^2), so that
 /// the ends, which may be cut sharply, carry no weight (order 4, and higher where the tails are inside). Each halving of the
-/// step keeps the old spheres; the difference it makes is the believed error, or an eighth of the one before. Clear spheres have resonances much narrower
+/// step keeps the old spheres; the difference it makes is the believed error, or a quarter of the one before. Clear spheres have resonances much narrower
 /// than any step: they make the last digits converge like the mean of random samples, and the believed error shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Average {
