@@ -1,6 +1,6 @@
 //! What methods cost and what errors they make, measured: a study is cases with references and the methods that answer them.
 //!
-//! To register a method is to push one [`Contender`] on a study; to add a study is to make one [`Study`].
+//! To register a method is to push one `Contender` on a study; to add a study is to make one `Study`.
 
 use std::time::Duration;
 

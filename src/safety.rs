@@ -1,6 +1,6 @@
 //! May the telescope move there? The judgement stands in front of every order, and beside every motion that nobody ordered.
 //!
-//! Pure: a [`Situation`] goes in, a [`Verdict`] comes out. Nothing here moves or stops anything; the session does.
+//! Pure: a `Situation` goes in, a `Verdict` comes out. Nothing here moves or stops anything; the session does.
 //!
 //! ```text
 //! situation (position, site, clock, turns, rules) + target -> verdict (allowed, warned, refused: why, and what to do)

@@ -1,7 +1,7 @@
 //! Model to cells, keys to events; red only. The only module that knows ratatui and crossterm.
 //!
-//! Night vision is what this program exists for, so red is not a theme here but a property: [`theme`] has no other colour to
-//! give, and [`backend`] has no other colour to write.
+//! Night vision is what this program exists for, so red is not a theme here but a property: `theme` has no other colour to
+//! give, and `backend` has no other colour to write.
 
 /// What reaches the terminal: red on black, no control characters, no reset to the terminal's own colours.
 pub mod backend;

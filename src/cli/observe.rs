@@ -41,7 +41,7 @@ mod summary;
     scotopic observe --headless --for 60 --goto M31 --projector png:frames\n  \
     scotopic observe --headless --for 21600 --fast            six hours of a simulated night in a minute")]
 pub struct Arguments {
-    /// The mount: sim, serial:PATH[@BAUD] or tcp:HOST:PORT [default: the settings', else sim]
+    /// The mount: sim, `serial:PATH[@BAUD]` or tcp:HOST:PORT [default: the settings', else sim]
     #[arg(long, value_name = "MOUNT")]
     pub mount: Option<MountAddress>,
     /// Where the picture goes: window, fb:/dev/fbN, png:DIR or none [default: the settings', else none]

@@ -1,5 +1,5 @@
 //! The observer's settings: one TOML file, written by a person and only read by the program. What the program itself
-//! must remember (the turns of the cable, the nudge) is [`state`]'s.
+//! must remember (the turns of the cable, the nudge) is `state`'s.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

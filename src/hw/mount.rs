@@ -5,7 +5,7 @@
 //! report, belief <- driver <- reply <- frame <- bytes
 //! ```
 //!
-//! Everything but [`link`] is pure: bytes in, bytes out, a clock handed in.
+//! Everything but `link` is pure: bytes in, bytes out, a clock handed in.
 
 /// Which mount, and over which line.
 pub mod address;

@@ -7,7 +7,7 @@
 //!
 //! The line to a mount is held exclusively, so the child cannot open it again: it is born with a duplicate of the open file.
 //! One child therefore belongs to one opening of the line, and is gone before the line is opened anew
-//! ([`Guard::release`]): there is no moment at which two children hold lines, and none at which a child holds an old one
+//! (`Guard::release`): there is no moment at which two children hold lines, and none at which a child holds an old one
 //! while the session speaks on a new one. The pipe needs no protocol for death: when the session dies, however it dies,
 //! the kernel closes the pipe.
 

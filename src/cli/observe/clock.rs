@@ -37,6 +37,11 @@ impl Clock {
         Clock::Virtual { now: Duration::ZERO, wall }
     }
 
+    /// Whether time passes only when it is told to.
+    pub(super) fn is_virtual(&self) -> bool {
+        matches!(self, Clock::Virtual { .. })
+    }
+
     /// Since the program started.
     pub(super) fn now(&self) -> Duration {
         match self {

@@ -92,7 +92,9 @@ pub(super) fn without_terminal(opened: Opened, seconds: f64, targets: &[String])
     let mut targets = targets.iter();
     let mut next_at = Duration::ZERO;
     session.run(|session| {
-        let idle = session.model.belief.link == LinkState::Ready && session.model.here.is_some();
+        // Before clock and site have been compared every go-to would be refused.
+        let belief = &session.model.belief;
+        let idle = belief.link == LinkState::Ready && belief.decision.is_some() && session.model.here.is_some();
         let free = idle && !session.model.belief.slewing_by_order() && session.clock.now() >= next_at;
         if free && let Some(name) = targets.next() {
             session.type_and_enter(name);
@@ -280,7 +282,8 @@ impl Session {
             Ok(()) => {
                 if let Some(age) = self.model.belief.position.age(self.clock.now()) {
                     self.projection.ages.add(age);
-                    if fresh {
+                    // Under a virtual clock no time passes while a picture is made.
+                    if fresh && !self.clock.is_virtual() {
                         self.projection.after_reply.add(age);
                     }
                 }

@@ -1,6 +1,6 @@
 //! The pump that joins driver and port, and opens the port again for ever.
 //!
-//! A thread turns it in a session ([`Pump::step`] waits for bytes no longer than the port does, a few milliseconds); a test
+//! A thread turns it in a session (`Pump::step` waits for bytes no longer than the port does, a few milliseconds); a test
 //! turns it with a virtual clock.
 
 use std::os::fd::OwnedFd;

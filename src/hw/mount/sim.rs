@@ -7,8 +7,8 @@
 //!                                                      tube (two axes that take time to move) -> where it really points
 //! ```
 //!
-//! It starts aligned, awake, tracking and above the horizon. What the sky sees ([`Simulator::true_axis`]) and what the mount
-//! says ([`Simulator::reported`]) differ by the pointing error, the periodic error, the drift and a push of the tube:
+//! It starts aligned, awake, tracking and above the horizon. What the sky sees (`Simulator::true_axis`) and what the mount
+//! says (`Simulator::reported`) differ by the pointing error, the periodic error, the drift and a push of the tube:
 //! these move the true axis and never the reported position.
 
 mod angles;
