@@ -422,17 +422,20 @@ fn a_target_that_crosses_the_zenith_within_the_hour_is_allowed_with_a_word() {
     assert!(matches!(verdict.hazards(), [Hazard::NearZenith { .. }]) && !verdict.is_refused(), "{verdict:?}");
 }
 
+/// A cable wound by so much, at the end of it the telescope at an azimuth.
+fn turned(degrees: f64, azimuth: f64) -> TurnCounter {
+    let mut turns = TurnCounter::unwound();
+    for i in 0..=100u64 {
+        let passing = azimuth - degrees + degrees * i as f64 / 100.0;
+        turns.observe(Angle::degrees(passing), Duration::from_millis(i * 500));
+    }
+    turns
+}
+
 #[test]
 fn the_cable_is_warned_of_at_270_refused_at_360_and_free_to_unwind() {
-    let turned = |degrees: f64| {
-        let mut turns = TurnCounter::unwound();
-        // End at azimuth 120, where the night's telescope points.
-        for i in 0..=100u64 {
-            let azimuth = 120.0 - degrees + degrees * i as f64 / 100.0;
-            turns.observe(Angle::degrees(azimuth), Duration::from_millis(i * 500));
-        }
-        turns
-    };
+    // End at azimuth 120, where the night's telescope points.
+    let turned = |degrees| turned(degrees, 120.0);
     let judge = |degrees: f64, azimuth: f64| {
         let case = Case { to: (azimuth, 50.0), ..night() };
         judge_goto(&Situation { turns: turned(degrees), ..case.situation() }, &case.of_date(case.to))
@@ -504,6 +507,18 @@ fn an_ordered_slew_that_takes_the_dangerous_way_round_is_stopped() {
     assert!(wrong.is_refused(), "{wrong:?}");
     let right = judge_motion(&situation(Motion::Slewing), &fix(0, sun.0 + 50.0), &fix(500, sun.0 + 54.0));
     assert!(!right.is_refused(), "{right:?}");
+}
+
+#[test]
+fn a_slew_that_overshoots_its_target_is_not_taken_for_one_the_long_way_round() {
+    let case = Case { to: (170.0, 82.0), ..night() };
+    let ordered = Some(case.of_date(case.to));
+    let situation = Situation { motion: Motion::Slewing, ordered, turns: turned(138.5, 170.0), ..case.situation() };
+    let fix = |ms, azimuth: f64| Fix { at: Duration::from_millis(ms), position: case.of_date((azimuth, 82.0)) };
+    let past = judge_motion(&situation, &fix(0, 169.8), &fix(250, 170.4));
+    assert!(!past.is_refused(), "{past:?}");
+    let away = judge_motion(&situation, &fix(0, 208.0), &fix(250, 210.0));
+    assert!(matches!(away, Verdict::Refused(Hazard::Wound { .. })), "{away:?}");
 }
 
 #[test]

@@ -15,6 +15,10 @@ const RATE_MOST_DEG_PER_S: f64 = FASTEST_DEG_PER_S * 1.25;
 /// A turning axis slower than this does not show which way round the mount has chosen.
 const CHOSEN_DEG_PER_S: f64 = 0.2;
 
+/// With less than this left to its target an axis that turns away from it may only have overshot: near the zenith one step of
+/// the mount's right ascension is minutes of azimuth.
+const OVERSHOT: Angle = Angle::degrees(15.0);
+
 /// Tracking may lead this far past a limit before it is an alarm: a target taken at the limit is none at once.
 const TRACKING_GRACE: Angle = Angle::degrees(1.0);
 
@@ -78,23 +82,30 @@ fn ahead(situation: &Situation, before: &Fix, latest: &Fix, light: &Sunlight, ru
     };
     let turning = rate((now.turning - then.turning).wrapped_signed());
     let tilting = rate(now.tilting - then.tilting);
+    let at_measured_rates = || {
+        let quarter = Angle::degrees(90.0);
+        let tilt = now.tilting + Angle::degrees(tilting * rules.reaction_s);
+        Sweep::new(&now, Angle::degrees(turning * rules.reaction_s), tilt.min(quarter).max(-quarter))
+    };
     match situation.ordered {
         Some(target) if situation.motion == Motion::Slewing => {
-            to_its_end(&now, &mounting.axes(&target, light, 0.0), turning)
+            to_its_end(&now, &mounting.axes(&target, light, 0.0), turning).unwrap_or_else(at_measured_rates)
         }
-        _ => {
-            let quarter = Angle::degrees(90.0);
-            let tilt = now.tilting + Angle::degrees(tilting * rules.reaction_s);
-            Sweep::new(&now, Angle::degrees(turning * rules.reaction_s), tilt.min(quarter).max(-quarter))
-        }
+        _ => at_measured_rates(),
     }
 }
 
-/// The rest of an ordered slew, the way round that the mount has visibly chosen.
-fn to_its_end(now: &AxisAngles, target: &AxisAngles, turning_deg_per_s: f64) -> Sweep {
+/// The rest of an ordered slew, the way round that the mount has visibly chosen; `None` when that cannot be told.
+fn to_its_end(now: &AxisAngles, target: &AxisAngles, turning_deg_per_s: f64) -> Option<Sweep> {
     let shorter = Sweep::shorter(now, target);
     let same_way = shorter.turn().to_degrees() * turning_deg_per_s >= 0.0;
-    if same_way || turning_deg_per_s.abs() < CHOSEN_DEG_PER_S { shorter } else { Sweep::longer(now, target) }
+    if same_way || turning_deg_per_s.abs() < CHOSEN_DEG_PER_S {
+        Some(shorter)
+    } else if shorter.turn().abs() < OVERSHOT {
+        None
+    } else {
+        Some(Sweep::longer(now, target))
+    }
 }
 
 /// The Sun, for a telescope that slews, tracks or stands.
