@@ -3,7 +3,7 @@
 #![cfg(feature = "window")]
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use scotopic::hw::projector::{Flip, Projector, ProjectorAddress, ProjectorError, open};
+use scotopic::hw::projector::{Flip, ProjectorAddress, ProjectorError, open};
 use scotopic::picture::Picture;
 
 #[test]
