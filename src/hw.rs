@@ -3,6 +3,10 @@
 //!
 //! "Now" is a [`std::time::Duration`] since the program started, handed in by the caller: no protocol reads a clock.
 
+/// The I2C bus that a projector's controller sits on.
+pub mod i2c;
+/// The projector's light: LED currents over I2C, and what they are in cd/m2.
+pub mod light;
 /// The telescope's mount: an LX200GPS and its dialect.
 pub mod mount;
 /// A line to a device, and why it failed.
