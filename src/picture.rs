@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Making a picture fit another size, and mirroring it.
+/// A picture between its pixels, half as large, mirrored, turned.
 mod fit;
 /// A small bounded reader of FITS images.
 pub mod fits;

@@ -3,7 +3,7 @@
 #![cfg(feature = "window")]
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use scotopic::hw::projector::{Flip, ProjectorAddress, ProjectorError, open};
+use scotopic::hw::projector::{Placement, ProjectorAddress, ProjectorError, open};
 use scotopic::picture::Picture;
 
 #[test]
@@ -12,7 +12,7 @@ fn a_window_opens_takes_pictures_and_closes_and_a_monitor_that_is_not_there_is_n
         eprintln!("skipped: no display; run it under xvfb-run");
         return;
     }
-    let mut window = open(&ProjectorAddress::Window(None), Flip::default()).unwrap();
+    let mut window = open(&ProjectorAddress::Window(None), Placement::default()).unwrap();
     assert!(window.describe().starts_with("window on"), "{}", window.describe());
     let mut picture = Picture::black(1024, 768);
     picture.pixels_mut().fill([1.0, 0.0, 0.0]);
@@ -26,7 +26,7 @@ fn a_window_opens_takes_pictures_and_closes_and_a_monitor_that_is_not_there_is_n
     drop(window);
 
     // One process may open a display's event loop once only; a second time is an error, not a panic.
-    match open(&ProjectorAddress::Window(Some("no such monitor".into())), Flip::default()) {
+    match open(&ProjectorAddress::Window(Some("no such monitor".into())), Placement::default()) {
         Err(ProjectorError::NoMonitor { .. } | ProjectorError::Open { .. }) => {}
         Err(other) => panic!("{other}"),
         Ok(window) => panic!("opened {}", window.describe()),

@@ -8,7 +8,7 @@ use etcetera::BaseStrategy;
 use serde::{Deserialize, Deserializer};
 
 use crate::hw::mount::address::MountAddress;
-use crate::hw::projector::ProjectorAddress;
+use crate::hw::projector::{Placement, PlacementError, ProjectorAddress};
 use crate::safety::Rules;
 use crate::safety::rules::RuleError;
 use crate::sky::site::Site;
@@ -43,6 +43,8 @@ pub struct Settings {
     pub photographs: Option<PathBuf>,
     /// Brightness of the sky's background at the zenith, V magnitudes per square arcsecond: 22 in the desert, 18 in a town.
     pub sky_brightness_mag_arcsec2: f64,
+    /// Where the picture lies on the projector's own pixels.
+    pub placement: Placement,
     /// The safety rules.
     pub rules: Rules,
 }
@@ -56,6 +58,7 @@ impl Default for Settings {
             instrument: None,
             photographs: None,
             sky_brightness_mag_arcsec2: 20.8,
+            placement: Placement::default(),
             rules: Rules::default(),
         }
     }
@@ -152,6 +155,7 @@ impl Settings {
         let settings: Settings = toml::from_str(text).map_err(|error| explain::wrong(&error, text))?;
         let out_of_range = |what: String| explain::Wrong { line: None, what };
         settings.rules.checked().map_err(|error: RuleError| out_of_range(error.to_string()))?;
+        settings.placement.checked().map_err(|error: PlacementError| out_of_range(error.to_string()))?;
         if !(10.0..=25.0).contains(&settings.sky_brightness_mag_arcsec2) {
             return Err(out_of_range(format!(
                 "sky_brightness_mag_arcsec2 = {} is out of range: give 16 (a city) to 22.2 (the darkest sky)",
@@ -241,6 +245,13 @@ mod tests {
             ("projector = \"beamer\"", "'beamer' is no projector"),
             ("sky_brightness_mag_arcsec2 = 3", "16 (a city)"),
             ("[rules]\nsun_cone_deg = -1", "rule sun_cone_deg = -1 is out of range"),
+            ("[placement]\nscale = 99", "scale = 99 is out of range"),
+            ("[placement]\nscale = \"big\"", "scale = \"big\" is not understood"),
+            ("[placement]\nscale = true", "scale is \"fit\" or a number"),
+            ("[placement]\nrotation_deg = 45", "give 0, 90, 180 or 270"),
+            ("[placement]\nflip = \"sideways\"", "`horizontal`"),
+            ("[placement]\nright_px = 1000000", "right_px = 1000000 is out of range"),
+            ("[placement]\nrigth_px = 1", "did you mean 'right_px'?"),
             ("mount = ", "line"),
             ("mount = 7", "string"),
         ] {

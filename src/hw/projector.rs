@@ -17,12 +17,19 @@ pub mod geometry;
 mod ioctl;
 /// Pictures kept in memory, for tests and previews.
 pub mod memory;
+/// A projector in a thread of its own, that shows the latest picture.
+pub mod output;
+/// Where the canvas lies on the module's own pixels.
+pub mod placement;
 /// A window on a monitor.
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use geometry::Flip;
 pub use memory::{Memory, Nowhere};
+pub use placement::{Flip, Placement, PlacementError, Rotation, Scale};
+
+/// Columns and rows of the canvas that pictures are drawn on, whatever the module's own pixels are.
+pub const CANVAS: (usize, usize) = (1024, 768);
 
 /// Something that shows pictures to the eyepiece.
 pub trait Projector: Send {
@@ -38,8 +45,27 @@ pub trait Projector: Send {
     /// The device is gone or refuses.
     fn dark(&mut self) -> Result<(), ProjectorError>;
 
+    /// Makes the light so much of the fullest that is allowed, 0 to 1. What the device cannot do with its lamp is left to the
+    /// pixels: multiply pictures by the answer's `gain`. Without a lamp that can be dimmed that is all of it.
+    ///
+    /// # Errors
+    /// The device is gone or refuses.
+    fn dim(&mut self, share: f32) -> Result<Dimmed, ProjectorError> {
+        // NaN is 0.
+        Ok(Dimmed { gain: if share > 0.0 { share.min(1.0) } else { 0.0 }, advice: None })
+    }
+
     /// What it is, in words for the screen: `framebuffer /dev/fb0, 1024 x 768, 32 bit`.
     fn describe(&self) -> String;
+}
+
+/// What came of [`Projector::dim`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimmed {
+    /// What pictures are to be multiplied by, 0 to 1.
+    pub gain: f32,
+    /// What the observer should do, in words: which filter to insert.
+    pub advice: Option<String>,
 }
 
 /// Where pictures shall go.
@@ -111,6 +137,9 @@ pub enum ProjectorError {
         /// What is wrong with it.
         why: geometry::GeometryError,
     },
+    /// The picture cannot be laid on the module so.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
     /// It worked and stopped working.
     #[error("the projector {path} stopped taking pictures: {why}; check its cable and power")]
     Lost {
@@ -144,17 +173,17 @@ fn list(found: &[String]) -> String {
     if found.is_empty() { "no monitor at all".into() } else { found.join(", ") }
 }
 
-/// Opens a projector and makes it dark. `flip` is applied to every picture.
+/// Opens a projector and makes it dark. `placement` lays every picture on its pixels.
 ///
 /// # Errors
 /// It cannot be opened: the sentence says why and what to do.
-pub fn open(address: &ProjectorAddress, flip: Flip) -> Result<Box<dyn Projector>, ProjectorError> {
+pub fn open(address: &ProjectorAddress, placement: Placement) -> Result<Box<dyn Projector>, ProjectorError> {
     Ok(match address {
         ProjectorAddress::None => Box::new(Nowhere),
-        ProjectorAddress::Framebuffer(path) => Box::new(framebuffer::Framebuffer::open(path, flip)?),
-        ProjectorAddress::Folder(path) => Box::new(folder::Folder::open(path, flip)?),
+        ProjectorAddress::Framebuffer(path) => Box::new(framebuffer::Framebuffer::open(path, placement)?),
+        ProjectorAddress::Folder(path) => Box::new(folder::Folder::open(path, placement)?),
         #[cfg(feature = "window")]
-        ProjectorAddress::Window(monitor) => Box::new(window::Window::open(monitor.as_deref(), flip)?),
+        ProjectorAddress::Window(monitor) => Box::new(window::Window::open(monitor.as_deref(), placement)?),
         #[cfg(not(feature = "window"))]
         ProjectorAddress::Window(_) => return Err(ProjectorError::NoWindows),
     })
@@ -176,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_device_that_is_not_there_is_a_sentence_with_advice() {
-        let Err(error) = open(&ProjectorAddress::Framebuffer("/dev/fb-none".into()), Flip::default()) else {
+        let Err(error) = open(&ProjectorAddress::Framebuffer("/dev/fb-none".into()), Placement::default()) else {
             panic!("there is no such device")
         };
         assert!(error.to_string().contains("/dev/fb-none") && error.to_string().contains("ls /dev/fb*"), "{error}");

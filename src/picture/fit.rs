@@ -1,36 +1,8 @@
-//! Making a picture fit another size, and mirroring it.
+//! A picture between its pixels, half as large, mirrored, turned.
 
 use super::Picture;
 
 impl Picture {
-    /// The picture as large as it fits into `width` x `height`, its shape kept, in the middle, black around it.
-    ///
-    /// Enlarged and shrunk bilinearly (in linear light); a whole factor of 1 copies.
-    #[must_use]
-    pub fn fitted(&self, width: usize, height: usize) -> Picture {
-        if (width, height) == (self.width, self.height) || self.pixels.is_empty() {
-            let mut same = Picture::black(width, height);
-            if !self.pixels.is_empty() {
-                same.pixels.copy_from_slice(&self.pixels);
-            }
-            return same;
-        }
-        let factor = (width as f32 / self.width as f32).min(height as f32 / self.height as f32);
-        let (left, top) =
-            ((width as f32 - self.width as f32 * factor) / 2.0, (height as f32 - self.height as f32 * factor) / 2.0);
-        let mut fitted = Picture::black(width, height);
-        for y in 0..height {
-            let source_y = (y as f32 + 0.5 - top) / factor;
-            for (x, pixel) in fitted.row_mut(y).iter_mut().enumerate() {
-                let source_x = (x as f32 + 0.5 - left) / factor;
-                if (0.0..self.width as f32).contains(&source_x) && (0.0..self.height as f32).contains(&source_y) {
-                    *pixel = self.sample(source_x, source_y);
-                }
-            }
-        }
-        fitted
-    }
-
     /// The light at a place between pixels, bilinearly; pixel (i, j) has its middle at (i + 0.5, j + 0.5). Beyond the middle
     /// of the outermost pixels the outermost pixels are taken.
     #[must_use]
@@ -84,6 +56,27 @@ impl Picture {
         }
         self
     }
+
+    /// The picture turned clockwise by so many quarters.
+    #[must_use]
+    pub fn turned(self, quarters: u8) -> Picture {
+        match quarters % 4 {
+            0 => self,
+            2 => self.flipped(true, true),
+            quarter => {
+                let mut turned = Picture::black(self.height, self.width);
+                for y in 0..turned.height {
+                    // A clockwise quarter brings the left column, read upwards, into the top row.
+                    let column = if quarter == 1 { y } else { self.width - 1 - y };
+                    for (x, pixel) in turned.row_mut(y).iter_mut().enumerate() {
+                        let row = if quarter == 1 { self.height - 1 - x } else { x };
+                        *pixel = self.pixels[row * self.width + column];
+                    }
+                }
+                turned
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -97,27 +90,19 @@ mod tests {
     }
 
     #[test]
-    fn a_wide_picture_on_a_square_has_black_above_and_below() {
-        let mut white = Picture::black(4, 2);
-        white.pixels_mut().fill([1.0; 3]);
-        let square = white.fitted(8, 8);
-        assert_eq!(square.row(1)[4], [0.0; 3]);
-        assert_eq!(square.row(2)[0], [1.0; 3]);
-        assert_eq!(square.row(5)[7], [1.0; 3]);
-        assert_eq!(square.row(6)[4], [0.0; 3]);
-    }
-
-    #[test]
-    fn the_same_size_is_the_same_picture() {
-        assert_eq!(dotted().fitted(4, 2), dotted());
-        assert!(Picture::black(0, 0).fitted(4, 4).is_black());
-    }
-
-    #[test]
     fn mirrors_move_the_dot_to_the_other_corners() {
         assert_eq!(dotted().flipped(true, false).row(0)[3], [1.0; 3]);
         assert_eq!(dotted().flipped(false, true).row(1)[0], [1.0; 3]);
         assert_eq!(dotted().flipped(true, true).row(1)[3], [1.0; 3]);
+    }
+
+    #[test]
+    fn a_clockwise_quarter_brings_the_upper_left_corner_to_the_upper_right() {
+        let quarter = dotted().turned(1);
+        assert_eq!((quarter.width(), quarter.height(), quarter.row(0)[1]), (2, 4, [1.0; 3]));
+        assert_eq!(dotted().turned(2).row(1)[3], [1.0; 3]);
+        assert_eq!(dotted().turned(3).row(3)[0], [1.0; 3]);
+        assert_eq!(dotted().turned(4), dotted());
     }
 
     #[test]

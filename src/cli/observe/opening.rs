@@ -58,8 +58,8 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let instrument = overlay::instrument(settings.instrument.as_deref(), None)?;
     let opener = opener(&mount, site, ours.utc_at_start)?;
     let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
-    let flip = projector::Flip { horizontal: instrument.projector.must_mirror(), ..projector::Flip::default() };
-    let projector = projector::open(&address, flip).map_err(Failure::failed)?;
+    let placement = settings.placement.mirrored(instrument.projector.must_mirror());
+    let projector = projector::open(&address, placement).map_err(Failure::failed)?;
     let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), ..Eye::default() };
 
     let state_path = if simulated { None } else { state::default_path() };

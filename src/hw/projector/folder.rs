@@ -4,18 +4,17 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::geometry::Flip;
-use super::{Projector, ProjectorError};
+use super::{CANVAS, Placement, Projector, ProjectorError};
 use crate::picture::{Picture, png};
 
 /// How many numbered pictures are kept: the oldest are overwritten, so that a night does not fill the disk.
 const KEPT: u64 = 1000;
 
-/// A folder of PNG files.
+/// A folder of PNG files. It stands for a module that has as many pixels as the canvas.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    flip: Flip,
+    placement: Placement,
     number: u64,
     size: (usize, usize),
 }
@@ -25,11 +24,12 @@ impl Folder {
     ///
     /// # Errors
     /// It cannot be made or written.
-    pub fn open(path: &Path, flip: Flip) -> Result<Folder, ProjectorError> {
+    pub fn open(path: &Path, placement: Placement) -> Result<Folder, ProjectorError> {
         let refused =
             |error: io::Error| ProjectorError::Open { path: path.display().to_string(), why: error.to_string() };
         fs::create_dir_all(path).map_err(refused)?;
-        let mut folder = Folder { path: path.to_owned(), flip, number: 0, size: (1024, 768) };
+        let placement = placement.checked()?;
+        let mut folder = Folder { path: path.to_owned(), placement, number: 0, size: CANVAS };
         folder.dark()?;
         Ok(folder)
     }
@@ -54,11 +54,7 @@ impl Folder {
 impl Projector for Folder {
     fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {
         self.size = (picture.width(), picture.height());
-        let bytes = if self.flip == Flip::default() {
-            self.encoded(picture)?
-        } else {
-            self.encoded(&picture.clone().flipped(self.flip.horizontal, self.flip.vertical))?
-        };
+        let bytes = self.encoded(&self.placement.apply(picture, self.size))?;
         self.write(&format!("frame-{:04}.png", self.number % KEPT), &bytes)?;
         self.number += 1;
         self.write("latest.png", &bytes)
@@ -92,7 +88,7 @@ mod tests {
     #[test]
     fn latest_is_black_at_the_start_and_at_the_end_and_each_picture_is_kept() {
         let path = std::env::temp_dir().join(format!("scotopic-folder-{}", std::process::id()));
-        let mut folder = Folder::open(&path, Flip { horizontal: true, vertical: false }).unwrap();
+        let mut folder = Folder::open(&path, Placement::default().mirrored(true)).unwrap();
         assert!(is_black(&path.join("latest.png")));
 
         let mut picture = Picture::black(8, 4);

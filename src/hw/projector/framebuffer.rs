@@ -5,8 +5,8 @@ use std::fs::{File, OpenOptions};
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use super::geometry::{Flip, Geometry, Screen};
-use super::{Projector, ProjectorError, ioctl};
+use super::geometry::{Geometry, Screen};
+use super::{CANVAS, Placement, Projector, ProjectorError, ioctl};
 use crate::picture::Picture;
 
 /// An open framebuffer.
@@ -15,7 +15,7 @@ pub struct Framebuffer {
     device: File,
     path: String,
     geometry: Geometry,
-    flip: Flip,
+    placement: Placement,
     /// The bytes that each visible row shows now; only rows that change are written.
     shown: Vec<Option<Vec<u8>>>,
 }
@@ -25,24 +25,30 @@ impl Framebuffer {
     ///
     /// # Errors
     /// It is not there, may not be opened, is no framebuffer, or has a geometry that cannot be written to.
-    pub fn open(path: &Path, flip: Flip) -> Result<Framebuffer, ProjectorError> {
+    pub fn open(path: &Path, placement: Placement) -> Result<Framebuffer, ProjectorError> {
         let refused = |why: String| ProjectorError::Open { path: path.display().to_string(), why };
         let device =
             OpenOptions::new().read(true).write(true).open(path).map_err(|error| refused(error.to_string()))?;
         let screen = ioctl::screen(&device)
             .map_err(|error| refused(format!("it is no framebuffer ({error}); is it the right device?")))?;
-        Framebuffer::with_screen(device, path, &screen, flip)
+        Framebuffer::with_screen(device, path, &screen, placement)
     }
 
     /// A device, or in tests a plain file, of known geometry.
     ///
     /// # Errors
     /// The geometry does not hold together, or the device does not take black.
-    fn with_screen(device: File, path: &Path, screen: &Screen, flip: Flip) -> Result<Framebuffer, ProjectorError> {
+    fn with_screen(
+        device: File,
+        path: &Path,
+        screen: &Screen,
+        placement: Placement,
+    ) -> Result<Framebuffer, ProjectorError> {
         let path = path.display().to_string();
         let geometry = Geometry::new(screen).map_err(|why| ProjectorError::Geometry { path: path.clone(), why })?;
+        let placement = placement.seen(CANVAS, geometry.size())?;
         let shown = vec![None; geometry.size().1];
-        let mut framebuffer = Framebuffer { device, path, geometry, flip, shown };
+        let mut framebuffer = Framebuffer { device, path, geometry, placement, shown };
         framebuffer.dark()?;
         Ok(framebuffer)
     }
@@ -63,10 +69,10 @@ impl Framebuffer {
 
 impl Projector for Framebuffer {
     fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {
-        let fitted = self.geometry.fitted(picture, self.flip);
-        for row in 0..fitted.height() {
+        let placed = self.placement.apply(picture, self.geometry.size());
+        for row in 0..placed.height() {
             let mut bytes = vec![0; self.geometry.row_bytes()];
-            self.geometry.encode_row(fitted.row(row), &mut bytes);
+            self.geometry.encode_row(placed.row(row), &mut bytes);
             self.write_row(row, bytes)?;
         }
         Ok(())
@@ -118,7 +124,7 @@ mod tests {
         let path = std::env::temp_dir().join(format!("scotopic-fb-{}", std::process::id()));
         std::fs::write(&path, [0x55; 36]).unwrap();
         let open = || OpenOptions::new().read(true).write(true).open(&path).unwrap();
-        let mut framebuffer = Framebuffer::with_screen(open(), &path, &screen(), Flip::default()).unwrap();
+        let mut framebuffer = Framebuffer::with_screen(open(), &path, &screen(), Placement::default()).unwrap();
         let dark = [[0; 8].as_slice(), &[0x55; 4]].concat().repeat(3);
         assert_eq!(std::fs::read(&path).unwrap(), dark, "dark when opened, padding untouched");
 
@@ -138,7 +144,7 @@ mod tests {
     fn a_plain_file_is_no_framebuffer() {
         let path = std::env::temp_dir().join(format!("scotopic-nofb-{}", std::process::id()));
         std::fs::write(&path, [0; 64]).unwrap();
-        let error = Framebuffer::open(&path, Flip::default()).unwrap_err().to_string();
+        let error = Framebuffer::open(&path, Placement::default()).unwrap_err().to_string();
         std::fs::remove_file(&path).unwrap();
         assert!(error.contains("no framebuffer"), "{error}");
     }

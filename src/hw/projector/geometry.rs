@@ -1,6 +1,6 @@
 //! The pure part of the framebuffer: the device's numbers, checked, and pictures into its bytes.
 
-use crate::picture::{Picture, srgb};
+use crate::picture::srgb;
 
 /// Sides beyond which a device is not believed.
 const LONGEST_SIDE: u32 = 8192;
@@ -75,15 +75,6 @@ pub enum GeometryError {
         /// Bytes there.
         there: u64,
     },
-}
-
-/// Mirrorings of the picture on its way to the module.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Flip {
-    /// Left and right change places.
-    pub horizontal: bool,
-    /// Top and bottom change places.
-    pub vertical: bool,
 }
 
 /// A device's geometry, checked: every visible pixel lies inside its memory.
@@ -179,13 +170,6 @@ impl Geometry {
             }
             pixel.copy_from_slice(&value.to_le_bytes()[..pixel.len()]);
         }
-    }
-
-    /// A picture made to fit the device: see [`Picture::fitted`], then flipped.
-    #[must_use]
-    pub fn fitted(&self, picture: &Picture, flip: Flip) -> Picture {
-        let (width, height) = self.size();
-        picture.fitted(width, height).flipped(flip.horizontal, flip.vertical)
     }
 }
 

@@ -15,8 +15,7 @@ use winit::monitor::MonitorHandle;
 use winit::platform::{wayland, x11};
 use winit::window::{Fullscreen, WindowId};
 
-use super::geometry::Flip;
-use super::{Projector, ProjectorError};
+use super::{Placement, Projector, ProjectorError};
 use crate::picture::{Picture, srgb};
 
 /// How long a display may take to open a window.
@@ -49,12 +48,13 @@ impl Window {
     ///
     /// # Errors
     /// No display, no monitor of that name (those there are listed), or the window landed on another monitor.
-    pub fn open(monitor: Option<&str>, flip: Flip) -> Result<Window, ProjectorError> {
+    pub fn open(monitor: Option<&str>, placement: Placement) -> Result<Window, ProjectorError> {
+        let placement = placement.checked()?;
         let (tell, told) = channel();
         let wanted = monitor.map(str::to_owned);
         let thread = std::thread::Builder::new()
             .name("window".into())
-            .spawn(move || run(wanted, flip, &tell))
+            .spawn(move || run(wanted, placement, &tell))
             .map_err(|error| refused(&error))?;
         let (proxy, monitor) =
             told.recv_timeout(PATIENCE).map_err(|_silent| refused(&"the display does not answer"))??;
@@ -96,7 +96,7 @@ fn refused(why: &dyn std::fmt::Display) -> ProjectorError {
 }
 
 /// The window's thread.
-fn run(wanted: Option<String>, flip: Flip, tell: &Sender<Opened>) {
+fn run(wanted: Option<String>, placement: Placement, tell: &Sender<Opened>) {
     let mut builder = EventLoop::with_user_event();
     x11::EventLoopBuilderExtX11::with_any_thread(&mut builder, true);
     wayland::EventLoopBuilderExtWayland::with_any_thread(&mut builder, true);
@@ -109,7 +109,7 @@ fn run(wanted: Option<String>, flip: Flip, tell: &Sender<Opened>) {
         Ok(context) => context,
         Err(error) => return drop(tell.send(Err(refused(&error)))),
     };
-    let mut screen = Screen { wanted, flip, tell, proxy, context, shown: None, picture: None };
+    let mut screen = Screen { wanted, placement, tell, proxy, context, shown: None, picture: None };
     if let Err(error) = events.run_app(&mut screen) {
         // If it had opened already nobody listens any more, and the next picture finds the loop gone.
         let _ = tell.send(Err(refused(&error)));
@@ -119,7 +119,7 @@ fn run(wanted: Option<String>, flip: Flip, tell: &Sender<Opened>) {
 /// The window and what it shows.
 struct Screen<'a> {
     wanted: Option<String>,
-    flip: Flip,
+    placement: Placement,
     tell: &'a Sender<Opened>,
     proxy: EventLoopProxy<Show>,
     context: Context<OwnedDisplayHandle>,
@@ -162,9 +162,8 @@ impl Screen<'_> {
         match &self.picture {
             None => buffer.fill(0),
             Some(picture) => {
-                let fitted = picture.fitted(size.width as usize, size.height as usize);
-                let fitted = fitted.flipped(self.flip.horizontal, self.flip.vertical);
-                for (pixel, light) in buffer.iter_mut().zip(fitted.pixels()) {
+                let placed = self.placement.apply(picture, (size.width as usize, size.height as usize));
+                for (pixel, light) in buffer.iter_mut().zip(placed.pixels()) {
                     let [red, green, blue] = light.map(|channel| u32::from(srgb::to_byte(channel)));
                     *pixel = red << 16 | green << 8 | blue;
                 }
