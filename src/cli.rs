@@ -24,6 +24,8 @@ pub mod overlay;
 pub mod photographs;
 /// What the methods cost and what errors they make.
 pub mod report;
+/// The rig file of the hardware tests.
+pub mod rig;
 /// The observer's settings, and what is remembered between sessions.
 pub mod settings;
 /// Devices that are not there.

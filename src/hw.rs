@@ -3,6 +3,8 @@
 //!
 //! "Now" is a [`std::time::Duration`] since the program started, handed in by the caller: no protocol reads a clock.
 
+/// A bad cable between any two ports, by a seed.
+pub mod fault_line;
 /// The hand controller's tapped cable, and what stands in for it.
 pub mod handbox;
 /// The I2C bus that a projector's controller sits on.

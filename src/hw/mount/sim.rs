@@ -29,6 +29,7 @@ pub mod settings;
 mod tube;
 mod wire;
 
+use std::collections::VecDeque;
 use std::time::Duration;
 
 use self::controller::Controller;
@@ -45,7 +46,22 @@ pub struct Simulator {
     framing: Framing,
     controller: Controller,
     error: PointingError,
+    told: VecDeque<Told>,
 }
+
+/// What the mount has said to a command, before any fault of the line: the truth that a driver is held against.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Told {
+    /// When the command was heard.
+    pub at: Duration,
+    /// The letters between `:` and `#`.
+    pub command: Vec<u8>,
+    /// The reply, all its parts.
+    pub reply: Vec<u8>,
+}
+
+/// So many replies are remembered.
+const TOLD: usize = 256;
 
 impl Simulator {
     /// A mount that stands as the settings say.
@@ -56,6 +72,7 @@ impl Simulator {
             framing: Framing::default(),
             error: PointingError::new(&settings),
             controller: Controller::new(settings),
+            told: VecDeque::new(),
         }
     }
 
@@ -99,7 +116,13 @@ impl Simulator {
             Heard::Control(byte) => self.controller.control(byte),
             Heard::Command(body) => {
                 self.wire.command_heard(&body, at);
-                self.controller.obey(&body, at)
+                let answer = self.controller.obey(&body, at);
+                if self.told.len() == TOLD {
+                    self.told.pop_front();
+                }
+                let reply = answer.parts.iter().flat_map(|(_, bytes)| bytes.clone()).collect();
+                self.told.push_back(Told { at, command: body, reply });
+                answer
             }
         };
         self.wire.reply(answer, at);
@@ -145,6 +168,11 @@ impl Simulator {
     pub fn reported(&mut self, now: Duration) -> Equatorial<OfDate> {
         self.tick(now);
         self.controller.reported(now)
+    }
+
+    /// The last replies, oldest first.
+    pub fn told(&self) -> impl DoubleEndedIterator<Item = &Told> {
+        self.told.iter()
     }
 
     /// Speeds of the azimuth and the altitude axis in degrees a second.
