@@ -49,7 +49,8 @@ fn compose(c: &mut Criterion) {
     let found = crowded(&field);
     let catalogue = Catalogue::embedded();
     let target = catalogue.search("M31").ok();
-    let scene = Scene { found: &found, target: target.as_ref(), photographs: &[], catalogue };
+    let scene =
+        Scene { found: &found, target: target.as_ref(), photographs: &[], catalogue, animation: None, menu: None };
     let (eye, style) = (Eye::default(), Style { mode: Mode::Over, ..Style::default() });
 
     let mut composer = Composer::default();

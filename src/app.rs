@@ -6,6 +6,8 @@
 
 /// The message at the top.
 pub mod banner;
+/// What the hand controller's keys mean.
+pub mod bindings;
 /// The one table of commands.
 pub mod commands;
 /// What the session asks of the world.
@@ -18,6 +20,8 @@ pub mod facts;
 pub mod key;
 /// What has happened.
 pub mod log;
+/// The menu in the eyepiece.
+pub mod menu;
 /// All that the session knows.
 pub mod model;
 /// What is to be drawn, and whether it differs from what was drawn.

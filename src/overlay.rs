@@ -3,6 +3,8 @@
 //! All drawing is in linear light. Text and marks use the red primary alone, which costs the dark-adapted eye least; stars
 //! and photographs keep their colours unless the style's palette is red.
 
+/// Moving pictures of an object.
+pub mod animation;
 /// Shapes and text laid over the picture.
 pub mod canvas;
 /// Colours of stars, and the red palette.
@@ -17,6 +19,8 @@ pub mod labels;
 pub mod layout;
 /// Outlines, reticle, north and east.
 pub mod marks;
+/// The menu in the eyepiece.
+pub mod menu;
 /// The observer's photographs.
 pub mod photograph;
 /// Stars as soft points.

@@ -4,6 +4,7 @@
 //! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue) -> picture (overlay) -> projector
 //! ```
 
+use crate::overlay::menu::Menu;
 use crate::overlay::{Composer, Eye, Photograph, Scene, Style, reach};
 use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, Found, Object};
@@ -34,6 +35,10 @@ pub struct View<'a> {
     pub eye: &'a Eye,
     /// How the overlay looks.
     pub style: &'a Style,
+    /// A frame of an animation, drawn in place of the photographs.
+    pub animation: Option<&'a Photograph>,
+    /// The menu over it all.
+    pub menu: Option<&'a Menu>,
 }
 
 /// One frame, and what it was made of.
@@ -52,7 +57,14 @@ pub struct Frame {
 pub fn frame(pointing: &Pointing, moment: &Moment, view: &View, composer: &mut Composer) -> Frame {
     let field = FieldOfView::new(pointing, view.instrument, moment, view.site);
     let found = view.catalogue.within(&field.centre(), reach(&field, view.style, view.target), faintest(view));
-    let scene = Scene { found: &found, target: view.target, photographs: view.photographs, catalogue: view.catalogue };
+    let scene = Scene {
+        found: &found,
+        target: view.target,
+        photographs: view.photographs,
+        catalogue: view.catalogue,
+        animation: view.animation,
+        menu: view.menu,
+    };
     let picture = composer.compose(&scene, &field, view.eye, view.style);
     Frame { field, found, picture }
 }
@@ -87,6 +99,8 @@ mod tests {
             target: Some(&m57),
             eye: &eye,
             style: &style,
+            animation: None,
+            menu: None,
         };
         frame(&pointing, &moment, &view, &mut Composer::default())
     }

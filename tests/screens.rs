@@ -109,6 +109,8 @@ fn session() -> Model {
         nudge: Default::default(),
         mount: "sim".into(),
         projector: "none".into(),
+        bindings: Default::default(),
+        animations: Vec::new(),
     })
 }
 

@@ -4,11 +4,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::banner::Banner;
+use super::bindings::Bindings;
 use super::facts::Listed;
 use super::log::Log;
+use super::menu::{Menu, Page};
 use super::scene::Scene;
 use super::search::Search;
 use crate::hw::mount::belief::Belief;
+use crate::overlay::animation::Playable;
 use crate::overlay::style::Mode;
 use crate::picture::Picture;
 use crate::safety::suspend::Clocks;
@@ -82,6 +85,10 @@ pub struct Opening {
     pub mount: String,
     /// Where the picture goes, in words: `none`, `fb:/dev/fb0`.
     pub projector: String,
+    /// What the hand controller's keys mean.
+    pub bindings: Bindings,
+    /// The animations that can be played.
+    pub animations: Vec<Playable>,
 }
 
 /// Time, as the session has it.
@@ -128,6 +135,8 @@ pub struct Counts {
     pub stopped: u64,
     /// Suspends, and times that the program stood still.
     pub gaps: u64,
+    /// Keys heard from the hand controller.
+    pub presses: u64,
 }
 
 /// How the terminal shows it.
@@ -148,6 +157,12 @@ pub struct Overlay {
     pub mode: Mode,
     /// 1 to 10.
     pub brightness: u8,
+    /// Whether photographs are drawn.
+    pub photographs: bool,
+    /// Whether words are drawn.
+    pub facts: bool,
+    /// Whether the object's animation is played.
+    pub animation: bool,
 }
 
 /// All that the session knows.
@@ -181,6 +196,10 @@ pub struct Model {
     pub search: Search,
     /// How the picture is drawn.
     pub overlay: Overlay,
+    /// The menu in the eyepiece, while it is open.
+    pub menu: Option<Menu>,
+    /// How long the animation has been played: it stands while nothing is drawn.
+    pub played: Duration,
     /// What the projector does.
     pub projector: Projector,
     /// What was drawn last, while it is shown.
@@ -214,7 +233,9 @@ impl Model {
             pairs: Vec::new(),
             instrument: opening.instrument.clone(),
             search: Search::default(),
-            overlay: Overlay { mode: Mode::Over, brightness: 7 },
+            overlay: Overlay { mode: Mode::Over, brightness: 7, photographs: true, facts: true, animation: false },
+            menu: None,
+            played: Duration::ZERO,
             projector: Projector::Dark("no position yet"),
             drawn: None,
             picture: None,
@@ -249,6 +270,46 @@ impl Model {
     pub fn target_of_date(&self) -> Option<Equatorial<OfDate>> {
         let (target, moment) = (self.target.as_ref()?, self.moment()?);
         Some(crate::sky::astrometry::apparent(&target.astrometry, &moment))
+    }
+
+    /// Which of the animations belongs to the target, or else to something in the field.
+    #[must_use]
+    pub fn animation(&self) -> Option<usize> {
+        let of = |name: &str| self.opening.animations.iter().position(|playable| playable.object == name);
+        match &self.target {
+            Some(target) => of(&target.name),
+            None => self.field.iter().find_map(|listed| of(&listed.name)),
+        }
+    }
+
+    /// The animation that is played now, and its frame.
+    #[must_use]
+    pub fn playing(&self) -> Option<(usize, usize)> {
+        let index = self.animation().filter(|_| self.overlay.animation)?;
+        Some((index, self.opening.animations.get(index)?.frame_at(self.played)))
+    }
+
+    /// The name of the object in the field that would be the next target; the list is nearest first.
+    #[must_use]
+    pub fn next_in_field(&self) -> Option<&str> {
+        let current = self.target.as_ref();
+        let current = current.and_then(|target| self.field.iter().position(|listed| listed.name == target.name));
+        let next = current.map_or(0, |place| place + 1);
+        self.field.get(next).or(self.field.first()).map(|listed| listed.name.as_str())
+    }
+
+    /// Opens a page of the menu in the eyepiece.
+    pub fn open_menu(&mut self, page: Page) {
+        self.menu = Some(Menu::open(page, self.time.now));
+    }
+
+    /// When something changes in the eyepiece without an event: the menu goes away, the next frame of an animation.
+    #[must_use]
+    pub fn wake_at(&self) -> Option<Duration> {
+        let frame = self.playing().filter(|_| self.drawn.is_some());
+        let frame = frame.and_then(|(index, _)| self.opening.animations.get(index));
+        let frame = frame.map(|playable| self.time.now + playable.until_next(self.played));
+        self.menu.as_ref().map(|menu| menu.until).into_iter().chain(frame).min()
     }
 
     /// Whether the picture was pushed.

@@ -1,5 +1,6 @@
 //! What is to be drawn, and whether it differs from what was drawn: less than half a pixel is not drawn again.
 
+use crate::overlay::menu::Menu;
 use crate::overlay::style::Mode;
 use crate::sky::catalogue::Object;
 use crate::sky::optics::Instrument;
@@ -33,6 +34,14 @@ pub struct Scene {
     pub brightness: f32,
     /// The object whose facts are told, if one was chosen.
     pub target: Option<Object>,
+    /// Whether photographs are drawn.
+    pub photographs: bool,
+    /// Whether words are drawn.
+    pub facts: bool,
+    /// Which animation is played, and its frame.
+    pub animation: Option<(usize, usize)>,
+    /// The menu over it.
+    pub menu: Option<Menu>,
 }
 
 impl Scene {
@@ -48,6 +57,8 @@ impl Scene {
             || turned_px >= SEEN_PX
             || (&self.instrument, self.mode, self.brightness, &self.target)
                 != (&drawn.instrument, drawn.mode, drawn.brightness, &drawn.target)
+            || (self.photographs, self.facts, self.animation, &self.menu)
+                != (drawn.photographs, drawn.facts, drawn.animation, &drawn.menu)
             || self.site != drawn.site
     }
 }

@@ -6,6 +6,8 @@ use super::model::{Model, Projector};
 
 /// Go-to and sync, through the judgement of safety.
 mod goto;
+/// Keys of the hand controller, and the menu in the eyepiece.
+mod handbox;
 /// Keys.
 mod keys;
 /// What the mount tells.

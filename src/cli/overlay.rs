@@ -143,6 +143,8 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         target: target.as_ref(),
         eye: &eye,
         style: &style,
+        animation: None,
+        menu: None,
     };
     let Frame { field, found, picture } = pipeline::frame(&pointing, &moment, &view, &mut Composer::default());
     write(&arguments.out, &png::encode(&picture).map_err(Failure::failed)?)?;

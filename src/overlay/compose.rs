@@ -4,6 +4,7 @@ use super::canvas::{Area, Disc, Ink, Region, circle, lay_text, line};
 use super::labels::{self, Wanted};
 use super::layout::{self, Beside, Line};
 use super::marks::{self, Outline};
+use super::menu::{Menu, Placed};
 use super::photograph::Photograph;
 use super::style::{Eye, Mode, Style};
 use super::text::{Scribe, Weight};
@@ -32,6 +33,10 @@ pub struct Scene<'a> {
     pub photographs: &'a [Photograph],
     /// Where names come from.
     pub catalogue: &'a Catalogue,
+    /// A frame of an animation, drawn in place of the photographs.
+    pub animation: Option<&'a Photograph>,
+    /// The menu over it all.
+    pub menu: Option<&'a Menu>,
 }
 
 /// Composes pictures, and keeps between them what did not change: written words, and photographs laid on the canvas.
@@ -63,11 +68,12 @@ pub fn compose(scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> 
 }
 
 impl Composer {
-    /// The picture of a scene: exactly black while the mount slews, when the position is stale, and in mode off.
+    /// The picture of a scene: exactly black while the mount slews, when the position is stale, and in mode off (there the
+    /// menu alone is drawn, if one is open).
     #[must_use]
     pub fn compose(&mut self, scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> Picture {
         let (width, height) = (field.width_px, field.height_px);
-        if !field.may_draw || style.mode == Mode::Off {
+        if !field.may_draw || (style.mode == Mode::Off && scene.menu.is_none()) {
             return Picture::black(width, height);
         }
         let size = (width, height);
@@ -75,33 +81,65 @@ impl Composer {
             return Picture::black(width, height);
         };
 
-        let target = scene.target.cloned().or_else(|| standing_out(scene, field));
         let visible = Region::new(width, height, vec![eyepiece_disc(field)]);
-        let view = view(field, style, target.as_ref(), &visible);
-
-        // The sky: photographs, stars, outlines.
-        let (mut picture, photographed) = self.photographs(scene.photographs, field, style, &view);
-        draw_stars(&mut picture, scene, field, style, &view, photographed);
-        let outlines = outlines(scene, &view);
-        self.draw_marks(&mut picture, &mut ink, &outlines, target.as_ref(), field, style, &view, &visible);
-
-        // The words, each keeping the place of those before it.
-        let mut taken = Vec::new();
-        if style.uncertainty && view.beside.is_none() {
-            taken.extend(self.uncertainty(&mut picture, field, style, &visible));
+        let em_px = layout::text_px(field, style);
+        let menu = scene.menu.and_then(|menu| Placed::find(menu, &mut self.scribe, em_px, size, &visible));
+        let mut picture = if style.mode == Mode::Off {
+            Picture::black(width, height)
+        } else {
+            self.sky(&mut ink, scene, field, eye, style, &visible, menu.as_ref().map(|menu| menu.area))
+        };
+        if let Some(menu) = &menu {
+            // What is in the holder is always told under the list.
+            if !style.information || style.mode == Mode::Off {
+                self.eyepieces_line(&mut picture, field, eye, style, &visible);
+            }
+            menu.draw(&mut picture, &mut ink, style, &visible);
         }
-        if style.information {
-            taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, &visible));
-            taken.extend(self.compass(&mut picture, &mut ink, field, style, &view, &visible));
-        }
-        if style.labels {
-            self.names(&mut picture, &mut ink, scene, field, style, &view, &outlines, target.as_ref(), taken);
-        }
-
         for light in picture.pixels_mut().iter_mut().flatten() {
             *light = (*light * style.gain).clamp(0.0, style.ceiling);
         }
         self.ink = Some(ink);
+        picture
+    }
+
+    /// The sky's picture with its words, which leave the menu's place free.
+    #[expect(clippy::too_many_arguments, reason = "what is drawn, on what, and how: each is used once")]
+    fn sky(
+        &mut self,
+        ink: &mut Ink,
+        scene: &Scene,
+        field: &FieldOfView,
+        eye: &Eye,
+        style: &Style,
+        visible: &Region,
+        menu: Option<Area>,
+    ) -> Picture {
+        let target = scene.target.cloned().or_else(|| standing_out(scene, field));
+        let view = view(field, style, target.as_ref(), visible);
+
+        // The sky: photographs or a moving picture, stars, outlines.
+        let still = if scene.animation.is_some() { &[] } else { scene.photographs };
+        let (mut picture, mut photographed) = self.photographs(still, field, style, &view);
+        if let Some(frame) = scene.animation {
+            photographed |= frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style));
+        }
+        draw_stars(&mut picture, scene, field, style, &view, photographed);
+        let outlines = outlines(scene, &view);
+        self.draw_marks(&mut picture, ink, &outlines, target.as_ref(), field, style, &view, visible);
+
+        // The words, each keeping the place of those before it.
+        let mut taken: Vec<Area> = menu.into_iter().collect();
+        if style.uncertainty && view.beside.is_none() {
+            taken.extend(self.uncertainty(&mut picture, field, style, visible));
+        }
+        if style.information {
+            taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, visible));
+            taken.extend(self.compass(&mut picture, ink, field, style, &view, visible));
+        }
+        if style.labels {
+            self.names(&mut picture, ink, scene, field, style, &view, &outlines, target.as_ref(), taken);
+        }
         picture
     }
 
@@ -116,11 +154,10 @@ impl Composer {
             return (laid.picture.clone(), laid.any);
         }
         let mut picture = Picture::black(field.width_px, field.height_px);
-        let light =
-            |light: [f32; 3]| colour::in_palette(style.palette, light).map(|channel| channel * style.photograph);
+        let light = photographs_light(style);
         let mut any = false;
         for photograph in all {
-            any |= photograph.draw(&mut picture, &view.region, &view.projection, light);
+            any |= photograph.draw(&mut picture, &view.region, &view.projection, &light);
         }
         self.photographs = Some(Laid { view: wanted, picture: picture.clone(), any });
         (picture, any)
@@ -200,6 +237,22 @@ impl Composer {
             lay_text(picture, &line.text, line.left, line.top, red);
         }
         lines.iter().map(Line::area).collect()
+    }
+
+    /// The line of the eyepiece in use, alone.
+    fn eyepieces_line(
+        &mut self,
+        picture: &mut Picture,
+        field: &FieldOfView,
+        eye: &Eye,
+        style: &Style,
+        visible: &Region,
+    ) {
+        let words = information::eyepiece(field, eye);
+        let em_px = layout::text_px(field, style);
+        if let Some(line) = layout::bottom_line(&mut self.scribe, &words, em_px, field, visible) {
+            lay_text(picture, &line.text, line.left, line.top, RED.map(|channel| channel * style.text));
+        }
     }
 
     /// How uncertain the position is, written under its circle; the box.
@@ -314,6 +367,12 @@ impl Composer {
             lay_text(picture, &written[name.index], left, top, RED.map(|channel| channel * light));
         }
     }
+}
+
+/// A photograph's light as the projector throws it.
+fn photographs_light(style: &Style) -> impl Fn([f32; 3]) -> [f32; 3] {
+    let (palette, share) = (style.palette, style.photograph);
+    move |light| colour::in_palette(palette, light).map(|channel| channel * share)
 }
 
 /// A name and what it belongs to.
@@ -473,7 +532,8 @@ mod tests {
         let target = ring();
         let found =
             catalogue.within(&field.centre(), reach(field, style, Some(&target)), crate::units::Magnitude(11.0));
-        let scene = Scene { found: &found, target: Some(&target), photographs: &[], catalogue };
+        let scene =
+            Scene { found: &found, target: Some(&target), photographs: &[], catalogue, animation: None, menu: None };
         compose(&scene, field, &Eye::default(), style)
     }
 
@@ -532,8 +592,14 @@ mod tests {
     fn an_empty_field_names_its_position() {
         let position = Equatorial::new(Angle::degrees(185.0), Angle::degrees(30.0));
         let field = FieldOfView::towards(&position, Angle::ZERO, &Instrument::default());
-        let scene =
-            Scene { found: &Found::default(), target: None, photographs: &[], catalogue: Catalogue::embedded() };
+        let scene = Scene {
+            catalogue: Catalogue::embedded(),
+            found: &Found::default(),
+            target: None,
+            photographs: &[],
+            animation: None,
+            menu: None,
+        };
         let picture = compose(&scene, &field, &Eye::default(), &Style::default());
         assert!(picture.row(30).iter().any(|pixel| pixel[0] > 0.3));
     }

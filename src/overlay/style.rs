@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::units::SurfaceBrightness;
 
 /// Where the picture stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// Over the object that is seen.

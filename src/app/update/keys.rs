@@ -1,10 +1,13 @@
 //! Keys: looked up in the table of commands, and done.
 
-use super::goto;
+use std::time::Duration;
+
+use super::{goto, handbox};
 use crate::app::commands::{Action, meaning};
 use crate::app::effect::Effect;
 use crate::app::key::{Arrow, Key};
 use crate::app::log::{KEPT, Weight};
+use crate::app::menu::Page;
 use crate::app::model::{Model, Screen};
 use crate::app::search::Search;
 use crate::hw::mount::order::Order;
@@ -84,7 +87,7 @@ fn acknowledged(model: &mut Model, words: Acknowledgement) {
     }
 }
 
-fn done(model: &mut Model, action: Action) -> Vec<Effect> {
+pub(super) fn done(model: &mut Model, action: Action) -> Vec<Effect> {
     match action {
         Action::Stop => return goto::stop(model),
         Action::Search => {
@@ -93,13 +96,29 @@ fn done(model: &mut Model, action: Action) -> Vec<Effect> {
         }
         Action::Goto => return goto::go(model),
         Action::NextObject => next_object(model),
-        Action::NextEyepiece => use_eyepiece(model, model.instrument.eyepiece_index() + 1),
+        Action::NextEyepiece => step_eyepiece(model, 1),
         Action::PreviousEyepiece => {
             let count = model.instrument.eyepieces.len();
-            use_eyepiece(model, model.instrument.eyepiece_index() + count.saturating_sub(1));
+            step_eyepiece(model, count.saturating_sub(1));
         }
         Action::ChooseEyepiece => use_eyepiece(model, model.view.bar),
         Action::OverlayMode => model.overlay.mode = model.overlay.mode.next(),
+        Action::Overlay(mode) => model.overlay.mode = mode,
+        Action::Photographs => {
+            model.overlay.photographs = !model.overlay.photographs;
+            model.note(if model.overlay.photographs { "photographs are drawn" } else { "no photographs are drawn" });
+        }
+        Action::Facts => {
+            model.overlay.facts = !model.overlay.facts;
+            model.note(if model.overlay.facts { "words are drawn" } else { "no words are drawn" });
+        }
+        Action::Animation => animate(model),
+        Action::Menu
+        | Action::EyepieceHelp
+        | Action::MenuDown
+        | Action::MenuUp
+        | Action::MenuChoose
+        | Action::MenuClose => return handbox::in_menu(model, action),
         Action::OverlayBrighter => model.overlay.brightness = (model.overlay.brightness + 1).min(10),
         Action::OverlayDimmer => model.overlay.brightness = model.overlay.brightness.saturating_sub(1).max(1),
         Action::ScreenBrighter => model.view.brightness = (model.view.brightness + 1).min(10),
@@ -152,6 +171,30 @@ fn scroll(model: &mut Model, by: usize) {
     model.view.bar = (model.view.bar + by).min(last);
 }
 
+/// Uses an eyepiece further on in the list, and shows the list in the eyepiece, as figure 8.10 of the thesis does.
+fn step_eyepiece(model: &mut Model, by: usize) {
+    use_eyepiece(model, model.instrument.eyepiece_index() + by);
+    model.open_menu(Page::Eyepieces);
+}
+
+/// Plays the object's animation from its beginning, or stops it.
+fn animate(model: &mut Model) {
+    if model.overlay.animation {
+        model.overlay.animation = false;
+        model.note("no animation is played");
+        return;
+    }
+    let name = model.target.as_ref().map_or_else(|| "what is in the field".to_owned(), |target| target.name.clone());
+    if model.animation().is_none() {
+        let text = format!("there is no animation of {name}");
+        model.say(Weight::Note, &text, "put one beside the photographs (docs/observing.md)");
+        return;
+    }
+    model.overlay.animation = true;
+    model.played = Duration::ZERO;
+    model.note(format!("playing the animation of {name}"));
+}
+
 fn use_eyepiece(model: &mut Model, index: usize) {
     let count = model.instrument.eyepieces.len().max(1);
     model.instrument.use_eyepiece(index % count);
@@ -162,15 +205,15 @@ fn use_eyepiece(model: &mut Model, index: usize) {
 
 /// Takes the next deep-sky object in the field as the target; the list is nearest first.
 fn next_object(model: &mut Model) {
-    let names: Vec<&str> = model.field.iter().map(|listed| listed.name.as_str()).collect();
-    let current = model.target.as_ref().and_then(|target| names.iter().position(|name| *name == target.name));
-    let next = current.map_or(0, |place| place + 1);
-    let Some(name) = names.get(next).or(names.first()) else {
+    let Some(name) = model.next_in_field() else {
         model.say(Weight::Note, "nothing in this field has a name", "press / and type one");
         return;
     };
     match Catalogue::embedded().search(name) {
-        Ok(object) => model.target = Some(object),
+        Ok(object) => {
+            model.note(format!("the target is {}", object.name));
+            model.target = Some(object);
+        }
         Err(error) => model.say(Weight::Note, &error.to_string(), ""),
     }
 }

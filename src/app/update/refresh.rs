@@ -55,7 +55,7 @@ fn scene(model: &Model, moment: Option<Moment>, horizon: Option<&Horizon>) -> Re
     if here.pointing.motion == Motion::Slewing || model.belief.slewing_by_order() {
         return Err("the telescope moves");
     }
-    if model.overlay.mode == Mode::Off {
+    if model.overlay.mode == Mode::Off && model.menu.is_none() {
         return Err("switched off");
     }
     let moment = moment.ok_or("date and time are unknown")?;
@@ -68,6 +68,10 @@ fn scene(model: &Model, moment: Option<Moment>, horizon: Option<&Horizon>) -> Re
         mode: model.overlay.mode,
         brightness: f32::from(model.overlay.brightness) / 10.0,
         target: model.target.clone(),
+        photographs: model.overlay.photographs,
+        facts: model.overlay.facts,
+        animation: model.playing(),
+        menu: model.menu.as_ref().map(|menu| menu.drawn(model)),
     })
 }
 

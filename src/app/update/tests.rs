@@ -39,6 +39,8 @@ fn opening() -> Opening {
         nudge: Default::default(),
         mount: "sim".into(),
         projector: "none".into(),
+        bindings: Default::default(),
+        animations: Vec::new(),
     }
 }
 

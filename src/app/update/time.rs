@@ -19,7 +19,14 @@ pub(super) fn passed(model: &mut Model, clocks: Clocks) -> Vec<Effect> {
     model.time.now = clocks.awake;
     model.time.ours = Some(Utc(clocks.wall.as_secs_f64()));
     choose_clock(model);
+    if model.menu.as_ref().is_some_and(|menu| menu.until <= clocks.awake) {
+        model.menu = None;
+    }
     let Some(before) = before else { return Vec::new() };
+    // An animation stands still while nothing is drawn: the mount moves.
+    if model.drawn.is_some() && model.playing().is_some() {
+        model.played += clocks.awake.saturating_sub(before.awake);
+    }
     match between(&before, &clocks) {
         Gap::Suspended { slept } => forget(model, &format!("the computer slept for {:.0} s", slept.as_secs_f64())),
         _ if clocks.awake.saturating_sub(before.awake) >= STANDSTILL => {

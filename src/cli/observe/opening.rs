@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::Arguments;
 use super::clock::Clock;
 use super::projection::Projection;
+use crate::app::bindings::Bindings;
 use crate::app::model::Opening;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
@@ -80,6 +81,8 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         nudge: Nudge { east, north },
         mount: mount.to_string(),
         projector: address.to_string(),
+        bindings: Bindings::default(),
+        animations: Vec::new(),
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
     let projection = Projection::new(projector, photographs, eye);

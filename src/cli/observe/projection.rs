@@ -45,10 +45,18 @@ impl Projection {
             instrument: &scene.instrument,
             site: scene.site.as_ref(),
             catalogue: Catalogue::embedded(),
-            photographs: &self.photographs,
+            photographs: if scene.photographs { &self.photographs } else { &[] },
             target: scene.target.as_ref(),
             eye: &self.eye,
-            style: &Style { mode: scene.mode, gain: scene.brightness, ..Style::default() },
+            style: &Style {
+                mode: scene.mode,
+                gain: scene.brightness,
+                information: scene.facts,
+                labels: scene.facts,
+                ..Style::default()
+            },
+            animation: None,
+            menu: scene.menu.as_ref(),
         };
         pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
     }

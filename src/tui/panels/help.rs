@@ -7,15 +7,17 @@ use ratatui::widgets::Paragraph;
 
 use super::cut;
 use crate::app::Model;
-use crate::app::commands::{COMMANDS, Where};
+use crate::app::commands::{COMMANDS, When, Where};
 use crate::tui::theme::{Level, Theme};
 
 pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     let room = usize::from(area.width).saturating_sub(31);
     let lines: Vec<Line<'_>> = COMMANDS
         .iter()
+        .filter(|command| !command.keys.is_empty())
         .map(|command| {
             let place = match command.at {
+                _ if command.when == When::MenuOpen => "menu",
                 Where::Always | Where::Everywhere => "",
                 Where::On(screens) => {
                     screens.first().filter(|_| screens.len() == 1).map_or("", |screen| screen.title())
