@@ -14,6 +14,8 @@ use self::settings::Settings;
 pub mod catalogue;
 /// How a subcommand ends without doing what was asked.
 pub mod failure;
+/// The mount without a session.
+pub mod mount;
 /// The field session.
 pub mod observe;
 /// What the telescope shows with each eyepiece.
@@ -65,6 +67,9 @@ pub struct Cli {
 enum Command {
     /// Point, see, know: the field session in a red terminal
     Observe(Box<observe::Arguments>),
+    /// Stop the mount without a session
+    #[command(subcommand)]
+    Mount(mount::Command),
     /// Play a device that is not there, on a port that other programs open
     #[command(subcommand)]
     Simulate(simulate::Device),
@@ -116,6 +121,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => observe::run(&observe::Arguments::default()),
         Some(Command::Observe(arguments)) => observe::run(&arguments),
+        Some(Command::Mount(command)) => mount::run(&command),
         Some(Command::Simulate(device)) => simulate::run(&device),
         Some(Command::Supervise) => supervise::run(),
         Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),

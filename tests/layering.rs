@@ -213,7 +213,7 @@ fn every_path_that_the_documents_name_exists() {
     for document in documents {
         let text = fs::read_to_string(&document).unwrap_or_default();
         for quoted in text.split('`').skip(1).step_by(2) {
-            let folders = ["src/", "docs/", "tests/", "fixtures/", "benches/"];
+            let folders = ["src/", "docs/", "tests/", "fixtures/", "benches/", "packaging/", "fuzz/"];
             let is_path = folders.iter().any(|f| quoted.starts_with(f)) && !quoted.contains(['*', ' ', '<', '{', '\n']);
             if is_path && !Path::new(quoted.trim_end_matches('/')).exists() {
                 wrong.push(format!("{}: {quoted}", document.display()));
