@@ -24,6 +24,8 @@ pub mod optics;
 pub mod overlay;
 /// A folder of the observer's photographs.
 pub mod photographs;
+/// The projector: its light.
+pub mod projector;
 /// What the methods cost and what errors they make.
 pub mod report;
 /// The rig file of the hardware tests.
@@ -84,6 +86,8 @@ enum Command {
     Catalogue(catalogue::Command),
     /// Make one picture as the projector would show it, without a session
     Overlay(Box<overlay::Arguments>),
+    /// Drive the projector by itself: its light
+    Projector(Box<projector::Arguments>),
     /// Say what the telescope shows with each eyepiece
     Optics(optics::Arguments),
     /// The low Sun through real air: single rays, the index of air
@@ -127,6 +131,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
+        Some(Command::Projector(arguments)) => projector::run(&arguments),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Sun(arguments)) => sun::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),

@@ -39,6 +39,7 @@ const ADAPTERS: &[&str] = &[
     "src/hw/i2c/pace.rs",
     "src/hw/i2c/pi.rs",
     "src/hw/light/fake/stored.rs",
+    "src/hw/light/guard.rs",
     "src/hw/port.rs",
     "src/hw/serial.rs",
     "src/hw/handbox/tap.rs",

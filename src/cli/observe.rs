@@ -27,7 +27,7 @@ mod projection;
 /// The one event loop.
 mod session;
 /// SIGTERM, SIGINT, SIGHUP.
-mod signals;
+pub(super) mod signals;
 /// What a session without a terminal ends with.
 mod summary;
 

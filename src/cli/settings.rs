@@ -18,6 +18,8 @@ use disk::Disk;
 pub mod disk;
 /// What is wrong in a TOML file, in words, with the nearest right key.
 pub mod explain;
+/// The projector's light.
+pub mod light;
 /// What the program remembers from session to session.
 pub mod state;
 
@@ -45,6 +47,8 @@ pub struct Settings {
     pub sky_brightness_mag_arcsec2: f64,
     /// Where the picture lies on the projector's own pixels.
     pub placement: Placement,
+    /// The projector's light.
+    pub light: light::Light,
     /// The safety rules.
     pub rules: Rules,
 }
@@ -59,6 +63,7 @@ impl Default for Settings {
             photographs: None,
             sky_brightness_mag_arcsec2: 20.8,
             placement: Placement::default(),
+            light: light::Light::default(),
             rules: Rules::default(),
         }
     }
@@ -144,6 +149,7 @@ impl Settings {
         let folder = path.parent().unwrap_or(Path::new(""));
         settings.instrument = settings.instrument.map(|file| folder.join(file));
         settings.photographs = settings.photographs.map(|file| folder.join(file));
+        settings.light = settings.light.based_at(folder);
         Ok(settings)
     }
 

@@ -7,12 +7,31 @@
 
 use crate::hw::i2c::{BusAddress, I2cBus, I2cError, linux};
 
+/// What somebody measured.
+pub mod calibration;
+/// The controller of the LEDs.
+pub mod controller;
+/// Why the light is not as it was asked.
+pub mod error;
 /// A made-up controller, with faults.
 pub mod fake;
+/// A second process that makes it dark if this one is killed.
+pub mod guard;
+/// A calibrated lamp.
+pub mod lamp;
 /// The families of modules.
 pub mod module;
+/// From cd/m2 to currents, pixel gain and filter.
+pub mod plan;
+/// Settings as bytes.
+pub mod wire;
 
+pub use calibration::Calibration;
+pub use controller::Controller;
+pub use error::LightError;
+pub use lamp::Lamp;
 pub use module::Module;
+pub use plan::{Plan, plan};
 
 /// Opens the bus at an address; a made-up one gets a module of this family.
 ///

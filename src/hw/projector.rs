@@ -15,6 +15,8 @@ pub mod framebuffer;
 pub mod geometry;
 /// The two calls into the kernel that the framebuffer needs.
 mod ioctl;
+/// A projector whose LEDs are driven too.
+pub mod lit;
 /// Pictures kept in memory, for tests and previews.
 pub mod memory;
 /// A projector in a thread of its own, that shows the latest picture.
@@ -148,6 +150,9 @@ pub enum ProjectorError {
         /// What the system says.
         why: String,
     },
+    /// Its LEDs are not as they were told.
+    #[error("the projector's light: {0}")]
+    Light(Box<crate::hw::light::LightError>),
     /// No monitor has that name.
     #[error("no monitor is called '{wanted}': there is {}", list(found))]
     NoMonitor {

@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 ///
 /// # Errors
 /// The system has no more file descriptors.
-pub(super) fn listen(mut told: impl FnMut() + Send + 'static) -> std::io::Result<()> {
+pub(in crate::cli) fn listen(mut told: impl FnMut() + Send + 'static) -> std::io::Result<()> {
     let (mut heard, said) = UnixStream::pair()?;
     for signal in [SIGTERM, SIGINT, SIGHUP] {
         signal_hook::low_level::pipe::register(signal, said.try_clone()?)?;

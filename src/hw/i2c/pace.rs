@@ -83,6 +83,12 @@ impl<'a> Within<'a> {
         !self.is_over()
     }
 
+    /// The same patience less some time at its end, but at least half of what is left.
+    pub fn sparing(&mut self, time: Duration) -> Within<'_> {
+        let left = self.until.saturating_sub(self.pace.now());
+        self.at_most(left.saturating_sub(time).max(left / 2))
+    }
+
     /// A shorter patience inside this one.
     pub fn at_most(&mut self, time: Duration) -> Within<'_> {
         let until = self.until.min(self.pace.now() + time);
