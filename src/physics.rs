@@ -10,3 +10,5 @@ pub mod ozone;
 pub mod rayleigh;
 /// How air bends light: mean refraction, and rays traced through layers.
 pub mod refraction;
+/// The light of the sky around a low Sun.
+pub mod skylight;

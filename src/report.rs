@@ -10,6 +10,8 @@ pub mod aerosol;
 pub mod plot;
 /// The refraction of single rays by every method.
 pub mod refraction;
+/// The light of the sky, against photons followed one by one.
+pub mod skylight;
 /// Extreme air and extreme rays.
 pub mod stability;
 

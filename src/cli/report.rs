@@ -7,8 +7,9 @@ use clap::{Args, Subcommand};
 use serde_json::json;
 
 use super::{Failure, answer, answer_json};
+use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
-use crate::report::{Measurement, Study, aerosol, measure, plot, stability, table};
+use crate::report::{Measurement, Study, aerosol, measure, plot, skylight, stability, table};
 
 /// Which report.
 #[derive(Debug, Clone, Args)]
@@ -27,6 +28,8 @@ enum Report {
     Refraction(Output),
     /// Error against run time of what particles take from light, and the published values beside ours
     Aerosol(Output),
+    /// Error against run time of the light of the sky, with photons followed one by one as the reference
+    Sky(Output),
     /// Extreme air and extreme rays: what held
     Stability {
         /// Answer as JSON
@@ -54,6 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.report {
         Report::Refraction(output) => refraction(output),
         Report::Aerosol(output) => particles(output),
+        Report::Sky(output) => sky(output),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -97,6 +101,28 @@ fn particles(output: &Output) -> Result<(), Failure> {
     answer(&format!("{}\n{}", aerosol::tables(&agreement, &costs), table(&study, &measurements).trim_end()))
 }
 
+fn sky(output: &Output) -> Result<(), Failure> {
+    let begin = Instant::now();
+    let (air, particles) = (us76::profile(), skylight::particles().map_err(Failure::failed)?);
+    let skies =
+        skylight::skies(&air, &particles, &|| begin.elapsed(), |told| eprintln!("{told}")).map_err(Failure::failed)?;
+    let study = skylight::study(&skies);
+    let measurements = timed(&study);
+    if let Some(folder) = &output.out {
+        write(folder, "sky", &study, &measurements)?;
+    }
+    let ready_s: Vec<f64> = skies.iter().map(|sky| sky.ready_s).collect();
+    if output.json {
+        return answer_json(&json!({ "ready_s": ready_s, "measurements": measurements }));
+    }
+    let ready: Vec<String> = ready_s.iter().map(|s| format!("{s:.2} s")).collect();
+    answer(&format!(
+        "{}\nA sky is ready, for all directions at one wavelength, in {}.",
+        table(&study, &measurements),
+        ready.join(", ")
+    ))
+}
+
 fn timed(study: &Study<'_>) -> Vec<Measurement> {
     let begin = Instant::now();
     measure(study, &|| begin.elapsed())
@@ -118,6 +144,7 @@ fn write(folder: &Path, name: &str, study: &Study<'_>, measurements: &[Measureme
 fn extremes(json: bool) -> Result<(), Failure> {
     let mut extremes = stability::run();
     extremes.extend(aerosol::extremes());
+    extremes.extend(skylight::extremes());
     if json {
         answer_json(&extremes)?;
     } else {

@@ -10,6 +10,8 @@ pub mod aerosol;
 pub mod air;
 /// The atmosphere that a name or a file stands for.
 pub mod atmosphere;
+/// The sky around the Sun.
+pub mod sky;
 /// One ray.
 pub mod trace;
 
@@ -26,6 +28,8 @@ enum Command {
     Aerosol(aerosol::Arguments),
     /// The refractive index of moist air (Ciddor 1996)
     Air(air::Arguments),
+    /// How bright the sky is in a direction around the low Sun
+    Sky(sky::Arguments),
     /// Follow one ray from the eye through the air
     Trace(trace::Arguments),
 }
@@ -38,6 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Aerosol(arguments) => aerosol::run(arguments),
         Command::Air(arguments) => air::run(arguments),
+        Command::Sky(arguments) => sky::run(arguments),
         Command::Trace(arguments) => trace::run(arguments),
     }
 }
