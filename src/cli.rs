@@ -14,6 +14,8 @@ use self::settings::Settings;
 pub mod catalogue;
 /// How a subcommand ends without doing what was asked.
 pub mod failure;
+/// The mount's own hand controller as an input device.
+pub mod handbox;
 /// The mount without a session.
 pub mod mount;
 /// The field session.
@@ -75,6 +77,9 @@ enum Command {
     /// Play a device that is not there, on a port that other programs open
     #[command(subcommand)]
     Simulate(simulate::Device),
+    /// Hear the keys of the mount's own hand controller on its tapped cable
+    #[command(subcommand)]
+    Handbox(handbox::Command),
     /// Watch over a session; started by the session itself
     #[command(hide = true)]
     Supervise,
@@ -127,6 +132,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Observe(arguments)) => observe::run(&arguments),
         Some(Command::Mount(command)) => mount::run(&command),
         Some(Command::Simulate(device)) => simulate::run(&device),
+        Some(Command::Handbox(command)) => handbox::run(&command, &Settings::load(None)?),
         Some(Command::Supervise) => supervise::run(),
         Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),
         Some(Command::Catalogue(command)) => catalogue::run(&command),

@@ -17,6 +17,8 @@ pub mod mount;
 pub mod port;
 /// The projector: framebuffer, files, memory, window.
 pub mod projector;
+/// Pseudo terminals, for simulators.
+mod pty;
 /// A serial port, or a pty that looks like one.
 pub mod serial;
 /// A second process that stops the mount if this one dies during a slew.

@@ -7,6 +7,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::{Args, Subcommand};
 
+/// The hand controller.
+pub mod handbox;
 mod record;
 
 use self::record::Recorder;
@@ -24,6 +26,8 @@ use crate::units::Angle;
 pub enum Device {
     /// A Meade LX200GPS: slow, silent and odd as the real one, with faults on request
     Mount(Box<Mount>),
+    /// A hand controller with a tapped cable: key names on standard input, bytes on a pseudo terminal
+    Handbox(handbox::Handbox),
 }
 
 /// The simulated mount, and where it listens.
@@ -69,7 +73,10 @@ pub struct Mount {
 /// # Errors
 /// It was asked wrongly, or the port cannot be opened.
 pub fn run(device: &Device) -> Result<(), Failure> {
-    let Device::Mount(mount) = device;
+    let mount = match device {
+        Device::Mount(mount) => mount,
+        Device::Handbox(arguments) => return handbox::run(arguments),
+    };
     if mount.faults.iter().any(|fault| fault == "list") {
         return list_faults(mount.json);
     }

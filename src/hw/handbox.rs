@@ -11,16 +11,30 @@ use std::time::Duration;
 
 use serde::Serialize;
 
+/// The speed of an unknown line, found by key presses.
+pub mod baud;
+/// What was heard, as JSON lines.
+pub mod capture;
 /// Bytes of the line -> keys.
 pub mod decoder;
 /// Key maps: which bytes a key sends, over which line.
 pub mod keymap;
+/// What the keys of an unknown cable send, found by pressing them.
+pub mod learn;
 /// Patterns of bytes with wildcards.
 pub mod pattern;
+/// Presenters and gamepads instead of a tapped cable.
+pub mod presenter;
 /// Debouncing, long presses, stuck keys.
 pub mod presses;
+/// A hand controller that is not there.
+pub mod sim;
+/// Where keys come from.
+pub mod source;
 /// The tapped line, read and never written.
 pub mod tap;
+/// The hand controller's display instead of a tapped cable.
+pub mod watch;
 
 pub use decoder::Decoder;
 pub use keymap::{KeyMap, KeyMapError};

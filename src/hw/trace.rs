@@ -1,6 +1,6 @@
 //! Conversations as JSON lines, recorded once and replayed for ever: a header, then `{t_us, dir, hex, note}`.
 //!
-//! `dir` is `to-mount`, `from-mount` or `none` (a note alone); `hex` the bytes; `t_us` the time since the start.
+//! `dir` is `to-mount`, `from-mount`, `from-handbox` or `none` (a note alone); `hex` the bytes; `t_us` the time since the start.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -18,6 +18,8 @@ pub enum Way {
     ToMount,
     /// From the mount to the computer.
     FromMount,
+    /// From the hand controller, on its tapped line. No part of the mount's conversation.
+    FromHandbox,
     /// A note, no bytes.
     None,
 }
@@ -136,7 +138,7 @@ impl Replay {
                 .map_err(|error| TraceError::Line { line: line_number, why: error.to_string() })?;
             let bytes =
                 unhex(&entry.hex).ok_or_else(|| TraceError::Hex { line: line_number, hex: entry.hex.clone() })?;
-            if entry.dir != Way::None && !bytes.is_empty() {
+            if matches!(entry.dir, Way::ToMount | Way::FromMount) && !bytes.is_empty() {
                 entries.push((entry.t_us, entry.dir, bytes));
             }
         }
@@ -205,14 +207,14 @@ impl Port for Replay {
     }
 }
 
-fn hex(bytes: &[u8]) -> String {
+pub(in crate::hw) fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     })
 }
 
-fn unhex(text: &str) -> Option<Vec<u8>> {
+pub(in crate::hw) fn unhex(text: &str) -> Option<Vec<u8>> {
     if !text.len().is_multiple_of(2) || !text.is_ascii() {
         return None;
     }

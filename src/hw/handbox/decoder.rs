@@ -15,6 +15,13 @@ const LONGEST_FRAME: usize = 256;
 /// More bytes of no key in one go are noise.
 const MOST_SHOWN: usize = 32;
 
+/// A burst cut where text for the LX200 Classic's display stands in it.
+pub(super) fn without_display(burst: &[u8]) -> Vec<Vec<u8>> {
+    let mut escape = Escape::default();
+    let pieces = burst.split(|byte| escape.swallows(*byte)).filter(|piece| !piece.is_empty());
+    pieces.map(<[u8]>::to_vec).collect()
+}
+
 /// What a pattern means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Meaning {

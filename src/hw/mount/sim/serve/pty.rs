@@ -3,16 +3,13 @@
 //! No slave is kept open here: while no client has it open, the master reads an end of file, and that is how coming and going
 //! are noticed. The master lives through it, and the name stays.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::fd::AsFd;
 use std::time::Duration;
 
-use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-
 use super::{Happened, Line, readable};
+use crate::hw::pty;
 
 /// How often a pty without a client is looked at.
 const LOOK: Duration = Duration::from_millis(20);
@@ -29,18 +26,8 @@ pub(super) struct Pty {
 
 impl Pty {
     pub(super) fn open() -> io::Result<Pty> {
-        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
-        grantpt(&master)?;
-        unlockpt(&master)?;
-        let name = ptsname(&master, Vec::new())?.to_string_lossy().into_owned();
-        // A new terminal echoes and edits lines; a serial line does neither. Closed at once: nobody is there yet.
-        let slave = OpenOptions::new().read(true).write(true).open(&name)?;
-        let mut raw = tcgetattr(&slave)?;
-        raw.make_raw();
-        tcsetattr(&slave, OptionalActions::Now, &raw)?;
-        drop(slave);
-        fcntl_setfl(&master, fcntl_getfl(&master)? | OFlags::NONBLOCK)?;
-        Ok(Pty { master: Some(File::from(master)), name, client: false, first: Vec::new() })
+        let (master, name) = pty::open()?;
+        Ok(Pty { master: Some(master), name, client: false, first: Vec::new() })
     }
 }
 
