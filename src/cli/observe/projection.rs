@@ -1,9 +1,13 @@
 //! Pictures to the projector, and how old the position is that they were drawn from when they get there.
 
+use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Duration;
 
+use super::clock::Clock;
 use crate::app::scene::Scene;
-use crate::hw::projector::{Projector, ProjectorError};
+use crate::hw::projector::output::{Output, Stamp, Told};
+use crate::hw::projector::{Dimmed, Nowhere, Projector};
 use crate::overlay::{Composer, Eye, Photograph, Style};
 use crate::picture::Picture;
 use crate::pipeline::{self, View};
@@ -12,35 +16,101 @@ use crate::sky::catalogue::Catalogue;
 /// So many ages are kept: enough for the 99th percentile, and no more memory in the longest night.
 const KEPT: usize = 4096;
 
+/// So many pictures wait for their stamp at most: the projector overtakes those that are older.
+const WAITING: usize = 8;
+
+/// Hears what the projector says.
+type Listener = Box<dyn FnMut(Told) + Send>;
+
+/// Where pictures go.
+enum Screen {
+    /// Not yet begun.
+    Waiting(Box<dyn Projector>),
+    /// In a thread of its own.
+    Thread(Output),
+    /// Under a virtual clock no time passes while a picture is shown.
+    Stepped(Box<dyn Projector>, Listener),
+}
+
+/// What a picture was made from.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Origin {
+    /// The instant that the position in it was predicted for.
+    pub(super) predicted_for: Duration,
+    /// When the mount told the position that the prediction began from.
+    pub(super) heard_at: Option<Duration>,
+    /// Whether that position has just come and caused the picture.
+    pub(super) fresh: bool,
+    /// When the key was pressed that caused the picture.
+    pub(super) key_at: Option<Duration>,
+}
+
 /// A projector with a stopwatch.
 pub(super) struct Projection {
-    projector: Box<dyn Projector>,
+    screen: Screen,
+    waiting: VecDeque<(Arc<Picture>, Origin)>,
     composer: Composer,
     photographs: Vec<Photograph>,
     eye: Eye,
-    /// Pictures handed over.
+    /// Pictures that reached the projector.
     pub(super) frames: u64,
-    /// Ages of the positions they were drawn from: the mount's reply to the picture handed over.
+    /// From the instant that the position was predicted for to the instant that the picture was there.
     pub(super) ages: Ages,
+    /// Ages of the newest position of the mount when the picture was there.
+    pub(super) samples: Ages,
     /// The same for pictures that a new position caused.
     pub(super) after_reply: Ages,
+    /// From a key of the hand controller to the picture that it caused.
+    pub(super) after_key: Ages,
+    /// How much the time from handing a picture over to its being there differs from one picture to the next.
+    pub(super) jitter: Ages,
+    last_delay: Option<Duration>,
+    /// The brightness that was asked of the projector, and what is left of it for the pixels.
+    light: Option<f32>,
+    gain: f32,
 }
 
 impl Projection {
     pub(super) fn new(projector: Box<dyn Projector>, photographs: Vec<Photograph>, eye: Eye) -> Projection {
         Projection {
-            projector,
+            screen: Screen::Waiting(projector),
+            waiting: VecDeque::new(),
             composer: Composer::default(),
             photographs,
             eye,
             frames: 0,
             ages: Ages::default(),
+            samples: Ages::default(),
             after_reply: Ages::default(),
+            after_key: Ages::default(),
+            jitter: Ages::default(),
+            last_delay: None,
+            light: None,
+            gain: 0.0,
         }
+    }
+
+    /// Begins: from now on pictures can be shown, and `told` hears what came of them.
+    ///
+    /// # Errors
+    /// The system has no more threads.
+    pub(super) fn start(&mut self, clock: Clock, told: impl FnMut(Told) + Send + 'static) -> std::io::Result<()> {
+        let before = std::mem::replace(&mut self.screen, Screen::Waiting(Box::new(Nowhere)));
+        self.screen = match before {
+            Screen::Waiting(projector) if clock.is_virtual() => Screen::Stepped(projector, Box::new(told)),
+            Screen::Waiting(projector) => {
+                Screen::Thread(Output::start(projector, Arc::new(move || clock.now()), told)?)
+            }
+            begun => begun,
+        };
+        Ok(())
     }
 
     /// The picture of a scene.
     pub(super) fn compose(&mut self, scene: &Scene) -> Picture {
+        if self.light != Some(scene.brightness) {
+            self.dim(scene.brightness);
+        }
         let view = View {
             instrument: &scene.instrument,
             site: scene.site.as_ref(),
@@ -50,7 +120,7 @@ impl Projection {
             eye: &self.eye,
             style: &Style {
                 mode: scene.mode,
-                gain: scene.brightness,
+                gain: self.gain,
                 information: scene.facts,
                 labels: scene.facts,
                 ..Style::default()
@@ -61,19 +131,81 @@ impl Projection {
         pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
     }
 
-    pub(super) fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {
-        self.projector.present(picture)?;
-        self.frames += 1;
-        Ok(())
+    /// Hands a picture over. Its stamp comes back through `told`: give it to [`Projection::stamped`].
+    pub(super) fn show(&mut self, picture: &Arc<Picture>, origin: Origin, now: Duration) {
+        if self.waiting.len() == WAITING {
+            self.waiting.pop_front();
+        }
+        self.waiting.push_back((Arc::clone(picture), origin));
+        match &mut self.screen {
+            Screen::Waiting(_) => {}
+            Screen::Thread(output) => output.show(Arc::clone(picture), origin.predicted_for),
+            Screen::Stepped(projector, told) => {
+                let stamp = Stamp { predicted_for: origin.predicted_for, asked: now, presented: now };
+                told(projector.present(picture).map_or_else(Told::Failed, |()| Told::Shown(stamp)));
+            }
+        }
     }
 
-    /// Black. An error is not told: the projector is told again at the next chance, and at the end by its own drop.
-    pub(super) fn dark(&mut self) {
-        let _ = self.projector.dark();
+    /// Takes the stamp of a picture in, and gives the picture; none if it has become dark since.
+    pub(super) fn stamped(&mut self, stamp: &Stamp) -> Option<Arc<Picture>> {
+        let place = self.waiting.iter().position(|(_, origin)| origin.predicted_for == stamp.predicted_for)?;
+        // Those before it were overtaken.
+        let (picture, origin) = self.waiting.drain(..=place).next_back()?;
+        self.frames += 1;
+        self.ages.add(stamp.age());
+        if let Some(heard_at) = origin.heard_at {
+            let age = stamp.presented.saturating_sub(heard_at);
+            self.samples.add(age);
+            if origin.fresh {
+                self.after_reply.add(age);
+            }
+        }
+        if let Some(key_at) = origin.key_at {
+            self.after_key.add(stamp.presented.saturating_sub(key_at));
+        }
+        let delay = stamp.presented.saturating_sub(stamp.asked);
+        if let Some(before) = self.last_delay.replace(delay) {
+            self.jitter.add(delay.abs_diff(before));
+        }
+        Some(picture)
+    }
+
+    /// Black, before anything else. An error is told as every other; the projector is told again until it is dark, and at the
+    /// end by its own drop.
+    pub(super) fn dark(&mut self, now: Duration) {
+        self.waiting.clear();
+        self.last_delay = None;
+        match &mut self.screen {
+            Screen::Waiting(projector) => drop(projector.dark()),
+            Screen::Thread(output) => output.dark(),
+            Screen::Stepped(projector, told) => {
+                told(projector.dark().map_or_else(Told::Failed, |()| Told::Dark(now)));
+            }
+        }
+    }
+
+    /// Makes the light so much of the fullest. Until the projector has said what the pixels must do they do all of it: a
+    /// picture is never brighter than was asked.
+    fn dim(&mut self, share: f32) {
+        (self.light, self.gain) = (Some(share), share);
+        match &mut self.screen {
+            Screen::Waiting(projector) => drop(projector.dim(share)),
+            Screen::Thread(output) => output.dim(share),
+            Screen::Stepped(projector, told) => told(projector.dim(share).map_or_else(Told::Failed, Told::Dimmed)),
+        }
+    }
+
+    /// Takes in what came of dimming; whether the picture must be drawn anew.
+    pub(super) fn dimmed(&mut self, dimmed: &Dimmed) -> bool {
+        std::mem::replace(&mut self.gain, dimmed.gain) != dimmed.gain
     }
 
     pub(super) fn describe(&self) -> String {
-        self.projector.describe()
+        match &self.screen {
+            Screen::Waiting(projector) | Screen::Stepped(projector, _) => projector.describe(),
+            Screen::Thread(output) => output.describe().to_owned(),
+        }
     }
 }
 
@@ -115,5 +247,26 @@ mod tests {
         assert_eq!([0.5, 0.95, 0.99].map(|share| ages.percentile_ms(share)), [Some(50.0), Some(95.0), Some(99.0)]);
         (0..100_000).for_each(|_| ages.add(Duration::from_millis(7)));
         assert_eq!((ages.kept.len(), ages.percentile_ms(0.99)), (KEPT, Some(7.0)));
+    }
+
+    #[test]
+    fn a_stamp_finds_its_picture_and_one_that_comes_after_dark_does_not() {
+        let ms = Duration::from_millis;
+        let mut projection = Projection::new(Box::new(Nowhere), Vec::new(), Eye::default());
+        let (tell, told) = std::sync::mpsc::channel();
+        projection.start(Clock::made(None), move |said| drop(tell.send(said))).unwrap();
+        let picture = Arc::new(Picture::black(2, 2));
+        let origin = Origin { predicted_for: ms(100), heard_at: Some(ms(60)), fresh: true, key_at: Some(ms(90)) };
+        projection.show(&picture, origin, ms(140));
+        let Ok(Told::Shown(stamp)) = told.recv() else { panic!("it is shown") };
+        assert!(projection.stamped(&stamp).is_some());
+        let medians = [&projection.ages, &projection.samples, &projection.after_reply, &projection.after_key];
+        assert_eq!(medians.map(|ages| ages.percentile_ms(0.5)), [40.0, 80.0, 80.0, 50.0].map(Some));
+
+        projection.show(&picture, Origin { predicted_for: ms(200), ..origin }, ms(201));
+        let Ok(Told::Shown(late)) = told.recv() else { panic!("it is shown") };
+        projection.dark(ms(202));
+        assert!(matches!(told.recv(), Ok(Told::Dark(_))) && projection.stamped(&late).is_none());
+        assert_eq!(projection.frames, 1);
     }
 }

@@ -8,7 +8,7 @@ use super::clock::Clock;
 use super::keeper::Keeper;
 use super::line::{Alive, Line, Said};
 use super::opening::Opened;
-use super::projection::Projection;
+use super::projection::{Origin, Projection};
 use super::signals;
 use super::summary::Summary;
 use crate::app::key::Key;
@@ -20,6 +20,7 @@ use crate::hw::mount::belief::LinkState;
 use crate::hw::mount::driver::Ours;
 use crate::hw::mount::link::Update;
 use crate::hw::mount::order::Report;
+use crate::hw::projector::output::Told;
 use crate::sky::catalogue::Catalogue;
 use crate::sky::pointing::Motion;
 use crate::tui::terminal::Taken;
@@ -46,6 +47,7 @@ enum Wake {
     Input(keys::Input),
     Mount(Box<Update>),
     Notice(String),
+    Projector(Told),
     AskedToEnd,
     TerminalGone,
 }
@@ -127,8 +129,10 @@ fn listen(wakes: &Sender<Wake>) {
 
 impl Session {
     fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
-        let Opened { mut opening, clock, ours, pump, projection, state_path, notices } = opened;
+        let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices } = opened;
         opening.projector = projection.describe();
+        let told = wakes.clone();
+        projection.start(clock, move |said| drop(told.send(Wake::Projector(said)))).map_err(Failure::failed)?;
         let told = wakes.clone();
         let keeper = Keeper::new(state_path, move |why| drop(told.send(Wake::Notice(why)))).map_err(Failure::failed)?;
         for notice in notices {
@@ -191,8 +195,14 @@ impl Session {
                 }
             }
         }
-        self.projection.dark();
+        self.projection.dark(self.clock.now());
         self.see_it_stop();
+        // What the projector has said in the meantime counts.
+        while let Ok(wake) = self.inbox.try_recv() {
+            if let Wake::Projector(Told::Shown(stamp)) = wake {
+                self.projection.stamped(&stamp);
+            }
+        }
         Ok(())
     }
 
@@ -240,6 +250,7 @@ impl Session {
                 self.happened(Event::Mount(Box::new(update.belief), update.reports));
             }
             Wake::Notice(text) => self.happened(Event::Notice(text)),
+            Wake::Projector(told) => self.projected(told),
             Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
         }
     }
@@ -263,7 +274,7 @@ impl Session {
         match effect {
             Effect::Order(order) => self.line.order(order, now),
             Effect::Draw(scene) => self.draw_picture(&scene, fresh),
-            Effect::Dark => self.projection.dark(),
+            Effect::Dark => self.projection.dark(now),
             Effect::Forget => {
                 self.ours.utc_at_start = self.clock.utc_at_start();
                 self.line.forget(self.ours, now);
@@ -276,20 +287,39 @@ impl Session {
     }
 
     fn draw_picture(&mut self, scene: &Scene, fresh: bool) {
-        self.dirty = true;
+        let now = self.clock.now();
+        let age = self.model.belief.position.age(now);
+        let origin = Origin {
+            predicted_for: now,
+            heard_at: age.map(|age| now.saturating_sub(age)),
+            // Under a virtual clock no time passes while a picture is made.
+            fresh: fresh && !self.clock.is_virtual(),
+            key_at: None,
+        };
         let picture = Arc::new(self.projection.compose(scene));
-        match self.projection.present(&picture) {
-            Ok(()) => {
-                if let Some(age) = self.model.belief.position.age(self.clock.now()) {
-                    self.projection.ages.add(age);
-                    // Under a virtual clock no time passes while a picture is made.
-                    if fresh && !self.clock.is_virtual() {
-                        self.projection.after_reply.add(age);
-                    }
+        self.projection.show(&picture, origin, now);
+    }
+
+    /// What the projector says.
+    fn projected(&mut self, told: Told) {
+        match told {
+            Told::Shown(stamp) => {
+                if let Some(picture) = self.projection.stamped(&stamp) {
+                    self.happened(Event::Shown(picture));
                 }
-                self.happened(Event::Shown(picture));
             }
-            Err(error) => self.happened(Event::ProjectorFailed(error.to_string())),
+            Told::Failed(error) => self.happened(Event::ProjectorFailed(error.to_string())),
+            Told::Dimmed(dimmed) => {
+                if self.projection.dimmed(&dimmed)
+                    && let Some(scene) = self.model.drawn.clone()
+                {
+                    self.draw_picture(&scene, false);
+                }
+                if let Some(advice) = dimmed.advice {
+                    self.happened(Event::Notice(advice));
+                }
+            }
+            Told::Dark(_) => {}
         }
     }
 

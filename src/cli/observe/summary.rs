@@ -22,11 +22,15 @@ impl Percentiles {
 /// The session in numbers.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Summary {
-    /// Pictures handed to the projector.
+    /// Pictures that reached the projector.
     frames: u64,
-    /// Age of the mount's reply when the picture drawn from it was handed over, all pictures.
+    /// From the instant that the position was predicted for to the instant that the picture was there.
     overlay_age_ms: Percentiles,
-    /// The same, only pictures that a new reply caused.
+    /// Age of the mount's newest reply when the picture was there.
+    sample_age_ms: Percentiles,
+    /// How much the time from handing a picture over to its being there differs from one picture to the next.
+    frame_jitter_ms: Percentiles,
+    /// Age of the reply, only for pictures that a new reply caused.
     reply_to_picture_ms: Percentiles,
     /// Positions read.
     polls: u64,
@@ -61,6 +65,8 @@ impl Summary {
         Summary {
             frames: projection.frames,
             overlay_age_ms: Percentiles::of(&projection.ages),
+            sample_age_ms: Percentiles::of(&projection.samples),
+            frame_jitter_ms: Percentiles::of(&projection.jitter),
             reply_to_picture_ms: Percentiles::of(&projection.after_reply),
             polls: counters.polls,
             retries: counters.retries,
