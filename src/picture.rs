@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+/// From linear light to a display's few codes.
+pub mod dither;
 /// A picture between its pixels, half as large, mirrored, turned.
 mod fit;
 /// A small bounded reader of FITS images.

@@ -4,9 +4,14 @@
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Instant;
 
 use crate::picture::Picture;
+use flip::{Beat, Flipping, SimulatedDisplay};
+use kms::plan::{KmsError, Wanted};
 
+/// Two buffers that change places between frames; a simulated display that proves it.
+pub mod flip;
 /// Pictures into a folder of PNG files.
 pub mod folder;
 /// The Linux framebuffer device.
@@ -15,6 +20,8 @@ pub mod framebuffer;
 pub mod geometry;
 /// The two calls into the kernel that the framebuffer needs.
 mod ioctl;
+/// A display controller, without a desktop.
+pub mod kms;
 /// A projector whose LEDs are driven too.
 pub mod lit;
 /// Pictures kept in memory, for tests and previews.
@@ -80,6 +87,10 @@ pub enum ProjectorAddress {
     Framebuffer(PathBuf),
     /// A folder that gets PNG files.
     Folder(PathBuf),
+    /// A connector of a display controller.
+    Kms(Wanted),
+    /// A simulated display of 1280 x 720 pixels and 60 Hz, that writes what it saw into a file at its end.
+    Simulated(Option<PathBuf>),
     /// A full-screen window, on the monitor of that name when one is given.
     Window(Option<String>),
 }
@@ -87,11 +98,14 @@ pub enum ProjectorAddress {
 impl FromStr for ProjectorAddress {
     type Err = ProjectorError;
 
-    /// Reads `none`, `fb:/dev/fb0`, `png:DIR`, `window` or `window:MONITOR`.
+    /// Reads `none`, `kms:CONNECTOR`, `fb:/dev/fb0`, `png:DIR`, `window`, `window:MONITOR`, `sim` or `sim:REPORT`.
     fn from_str(text: &str) -> Result<ProjectorAddress, ProjectorError> {
         match text.split_once(':') {
             _ if text == "none" => Ok(ProjectorAddress::None),
             _ if text == "window" => Ok(ProjectorAddress::Window(None)),
+            _ if text == "sim" => Ok(ProjectorAddress::Simulated(None)),
+            Some(("kms", wanted)) => Ok(ProjectorAddress::Kms(wanted.parse()?)),
+            Some(("sim", path)) if !path.is_empty() => Ok(ProjectorAddress::Simulated(Some(path.into()))),
             Some(("fb", path)) if !path.is_empty() => Ok(ProjectorAddress::Framebuffer(path.into())),
             Some(("png", path)) if !path.is_empty() => Ok(ProjectorAddress::Folder(path.into())),
             Some(("window", name)) if !name.is_empty() => Ok(ProjectorAddress::Window(Some(name.into()))),
@@ -106,6 +120,9 @@ impl fmt::Display for ProjectorAddress {
             ProjectorAddress::None => write!(f, "none"),
             ProjectorAddress::Framebuffer(path) => write!(f, "fb:{}", path.display()),
             ProjectorAddress::Folder(path) => write!(f, "png:{}", path.display()),
+            ProjectorAddress::Kms(wanted) => write!(f, "kms:{wanted}"),
+            ProjectorAddress::Simulated(None) => write!(f, "sim"),
+            ProjectorAddress::Simulated(Some(path)) => write!(f, "sim:{}", path.display()),
             ProjectorAddress::Window(None) => write!(f, "window"),
             ProjectorAddress::Window(Some(name)) => write!(f, "window:{name}"),
         }
@@ -116,8 +133,18 @@ impl fmt::Display for ProjectorAddress {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProjectorError {
     /// The address was not understood.
-    #[error("'{0}' is no projector: give none, fb:/dev/fb0, png:FOLDER, window or window:MONITOR")]
+    #[error(
+        "'{0}' is no projector: give none, kms:CONNECTOR, fb:/dev/fb0, png:FOLDER, window or window:MONITOR, or sim"
+    )]
     Address(String),
+    /// The display controller cannot be used so.
+    #[error(transparent)]
+    Kms(#[from] KmsError),
+    /// This program was built without display controllers.
+    #[error(
+        "this scotopic was built without display controllers: build it with `cargo build --release --features kms`, or use fb: or png:"
+    )]
+    NoKms,
     /// This program was built without windows.
     #[error(
         "this scotopic was built without windows: build it with `cargo build --release --features window`, or use fb: or png:"
@@ -186,6 +213,11 @@ pub fn open(address: &ProjectorAddress, placement: Placement) -> Result<Box<dyn 
     Ok(match address {
         ProjectorAddress::None => Box::new(Nowhere),
         ProjectorAddress::Framebuffer(path) => Box::new(framebuffer::Framebuffer::open(path, placement)?),
+        #[cfg(feature = "kms")]
+        ProjectorAddress::Kms(wanted) => Box::new(kms::controller::open(wanted, placement)?),
+        #[cfg(not(feature = "kms"))]
+        ProjectorAddress::Kms(_) => return Err(ProjectorError::NoKms),
+        ProjectorAddress::Simulated(report) => Box::new(simulated(report.clone(), placement)?),
         ProjectorAddress::Folder(path) => Box::new(folder::Folder::open(path, placement)?),
         #[cfg(feature = "window")]
         ProjectorAddress::Window(monitor) => Box::new(window::Window::open(monitor.as_deref(), placement)?),
@@ -194,16 +226,32 @@ pub fn open(address: &ProjectorAddress, placement: Placement) -> Result<Box<dyn 
     })
 }
 
+/// A display that is not there: its pixels and rate are those of the plainest module that takes HDMI.
+fn simulated(report: Option<PathBuf>, placement: Placement) -> Result<Flipping<SimulatedDisplay>, ProjectorError> {
+    let display = SimulatedDisplay::new(1280, 720, 60.0, Beat::Real(Instant::now()))
+        .map_err(|why| ProjectorError::Geometry { path: "sim".into(), why })?;
+    Flipping::new(display.reporting(report), placement)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn addresses_are_read_and_written_alike() {
-        for text in ["none", "fb:/dev/fb1", "png:/tmp/frames", "window", "window:HDMI-A-2"] {
+        for text in [
+            "none",
+            "kms:card1/DPI-1",
+            "sim",
+            "sim:/tmp/report.json",
+            "fb:/dev/fb1",
+            "png:/tmp/frames",
+            "window",
+            "window:HDMI-A-2",
+        ] {
             assert_eq!(text.parse::<ProjectorAddress>().unwrap().to_string(), text);
         }
-        for wrong in ["", "fb", "fb:", "hdmi", "png:", "window:"] {
+        for wrong in ["", "fb", "fb:", "hdmi", "png:", "window:", "kms", "sim:"] {
             assert!(matches!(wrong.parse::<ProjectorAddress>(), Err(ProjectorError::Address(_))), "{wrong}");
         }
     }

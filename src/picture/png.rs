@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use image::{ImageFormat, RgbImage};
 
-use super::{Picture, srgb};
+use super::{Picture, dither, srgb};
 
 /// Why a picture could not be written as PNG.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -20,9 +20,20 @@ pub struct PngError {
 /// # Errors
 /// A picture without pixels, or larger than PNG can be.
 pub fn encode(picture: &Picture) -> Result<Vec<u8>, PngError> {
-    let (width, height) = (picture.width(), picture.height());
-    let refused = |why: String| PngError { width, height, why };
     let bytes = picture.pixels().iter().flatten().map(|&linear| srgb::to_byte(linear)).collect();
+    of_bytes(picture.width(), picture.height(), bytes)
+}
+
+/// The bytes of a PNG file, as a display dithers the picture.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_dithered(picture: &Picture) -> Result<Vec<u8>, PngError> {
+    of_bytes(picture.width(), picture.height(), dither::rgb8(picture))
+}
+
+fn of_bytes(width: usize, height: usize, bytes: Vec<u8>) -> Result<Vec<u8>, PngError> {
+    let refused = |why: String| PngError { width, height, why };
     let sides = u32::try_from(width).ok().zip(u32::try_from(height).ok());
     let image = sides
         .and_then(|(width, height)| RgbImage::from_raw(width, height, bytes))

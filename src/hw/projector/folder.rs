@@ -47,7 +47,7 @@ impl Folder {
     }
 
     fn encoded(&self, picture: &Picture) -> Result<Vec<u8>, ProjectorError> {
-        png::encode(picture).map_err(|error| self.lost(&error.to_string()))
+        png::encode_dithered(picture).map_err(|error| self.lost(&error.to_string()))
     }
 }
 

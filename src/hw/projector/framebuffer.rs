@@ -72,7 +72,7 @@ impl Projector for Framebuffer {
         let placed = self.placement.apply(picture, self.geometry.size());
         for row in 0..placed.height() {
             let mut bytes = vec![0; self.geometry.row_bytes()];
-            self.geometry.encode_row(placed.row(row), &mut bytes);
+            self.geometry.encode_row(row, placed.row(row), &mut bytes);
             self.write_row(row, bytes)?;
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! The pure part of the framebuffer: the device's numbers, checked, and pictures into its bytes.
 
-use crate::picture::srgb;
+use crate::picture::dither::Codes;
 
 /// Sides beyond which a device is not believed.
 const LONGEST_SIDE: u32 = 8192;
@@ -158,15 +158,15 @@ impl Geometry {
         (self.width * self.bytes_per_pixel) as usize
     }
 
-    /// Writes a row of pixels as the device wants them, least significant byte first. `row` must be as wide as the device
-    /// and `bytes` [`Geometry::row_bytes`] long; what is beyond the shorter of the two stays as it was.
-    pub fn encode_row(&self, row: &[[f32; 3]], bytes: &mut [u8]) {
+    /// Writes row `y` of pixels, dithered, as the device wants them, least significant byte first. `row` must be as wide as
+    /// the device and `bytes` [`Geometry::row_bytes`] long; what is beyond the shorter of the two stays as it was.
+    pub fn encode_row(&self, y: usize, row: &[[f32; 3]], bytes: &mut [u8]) {
+        let codes = self.colours.map(|field| Codes::of(field.length));
         let pixels = bytes.chunks_exact_mut(self.bytes_per_pixel as usize);
-        for (colour, pixel) in row.iter().zip(pixels) {
+        for (x, (colour, pixel)) in row.iter().zip(pixels).enumerate() {
             let mut value = 0u32;
-            for (field, &light) in self.colours.iter().zip(colour) {
-                // The highest bits of the 8-bit code.
-                value |= (u32::from(srgb::to_byte(light)) >> (8 - field.length)) << field.offset;
+            for ((field, codes), &light) in self.colours.iter().zip(codes).zip(colour) {
+                value |= u32::from(codes.dithered(light, x, y)) << field.offset;
             }
             pixel.copy_from_slice(&value.to_le_bytes()[..pixel.len()]);
         }
@@ -229,7 +229,7 @@ mod tests {
     fn encoded(screen: &Screen, colour: [f32; 3]) -> Vec<u8> {
         let geometry = Geometry::new(screen).unwrap();
         let mut bytes = vec![0; screen.bits_per_pixel as usize / 8];
-        geometry.encode_row(&[colour], &mut bytes);
+        geometry.encode_row(0, &[colour], &mut bytes);
         bytes
     }
 
@@ -301,7 +301,7 @@ mod tests {
                 prop_assert!(end <= u64::from(screen.smem_len));
                 prop_assert!(geometry.row_bytes() <= screen.line_length as usize);
                 let mut bytes = vec![0; geometry.row_bytes()];
-                geometry.encode_row(&vec![[1.0; 3]; screen.xres as usize], &mut bytes);
+                geometry.encode_row(0, &vec![[1.0; 3]; screen.xres as usize], &mut bytes);
             }
         }
     }

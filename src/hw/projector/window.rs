@@ -16,7 +16,7 @@ use winit::platform::{wayland, x11};
 use winit::window::{Fullscreen, WindowId};
 
 use super::{Placement, Projector, ProjectorError};
-use crate::picture::{Picture, srgb};
+use crate::picture::{Picture, dither};
 
 /// How long a display may take to open a window.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -163,9 +163,8 @@ impl Screen<'_> {
             None => buffer.fill(0),
             Some(picture) => {
                 let placed = self.placement.apply(picture, (size.width as usize, size.height as usize));
-                for (pixel, light) in buffer.iter_mut().zip(placed.pixels()) {
-                    let [red, green, blue] = light.map(|channel| u32::from(srgb::to_byte(channel)));
-                    *pixel = red << 16 | green << 8 | blue;
+                for (pixel, light) in buffer.iter_mut().zip(dither::rgb8(&placed).chunks_exact(3)) {
+                    *pixel = u32::from(light[0]) << 16 | u32::from(light[1]) << 8 | u32::from(light[2]);
                 }
             }
         }
