@@ -21,6 +21,8 @@ pub mod layout;
 pub mod marks;
 /// The menu in the eyepiece.
 pub mod menu;
+/// Test patterns for building and aligning the projector.
+pub mod patterns;
 /// The observer's photographs.
 pub mod photograph;
 /// Stars as soft points.

@@ -1,28 +1,100 @@
-//! The window as projector, on whatever display there is: `xvfb-run cargo test --features window --test window`.
+//! The window as projector: on a display of its own (Xvfb, if it is installed), whose screen the test reads back.
+//!
+//! `cargo test --features window --test window`
 
 #![cfg(feature = "window")]
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
 use scotopic::hw::projector::{Placement, ProjectorAddress, ProjectorError, open};
 use scotopic::picture::Picture;
 
-#[test]
-fn a_window_opens_takes_pictures_and_closes_and_a_monitor_that_is_not_there_is_named() {
-    if std::env::var_os("DISPLAY").is_none() && std::env::var_os("WAYLAND_DISPLAY").is_none() {
-        eprintln!("skipped: no display; run it under xvfb-run");
-        return;
+/// A display in memory, of 1280 x 720 pixels, whose picture lies in a file of a folder.
+struct Display {
+    server: Child,
+    name: String,
+    folder: PathBuf,
+}
+
+impl Display {
+    /// None if there is no Xvfb.
+    fn start() -> Option<Display> {
+        let number = 90 + std::process::id() % 800;
+        let folder = std::env::temp_dir().join(format!("scotopic-xvfb-{number}"));
+        std::fs::create_dir_all(&folder).unwrap();
+        let server = Command::new("Xvfb")
+            .arg(format!(":{number}"))
+            .args(["-screen", "0", "1280x720x24", "-nolisten", "tcp", "-fbdir"])
+            .arg(&folder)
+            .stderr(Stdio::null())
+            .spawn()
+            .ok()?;
+        let display = Display { server, name: format!(":{number}"), folder };
+        let socket = PathBuf::from(format!("/tmp/.X11-unix/X{number}"));
+        let patience = Instant::now() + Duration::from_secs(30);
+        while !socket.exists() {
+            assert!(Instant::now() < patience, "Xvfb does not start");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        Some(display)
     }
-    let mut window = open(&ProjectorAddress::Window(None), Placement::default()).unwrap();
-    assert!(window.describe().starts_with("window on"), "{}", window.describe());
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// The screen's pixels, blue, green, red and a byte of nothing, from the X window dump that Xvfb keeps: its header's length is
+/// in the first word, the number of colour map entries of 12 bytes in the twentieth.
+fn screen(folder: &Path) -> Vec<[u8; 4]> {
+    let bytes = std::fs::read(folder.join("Xvfb_screen0")).unwrap();
+    let word = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let start = word(0) + word(76) * 12;
+    bytes[start..start + 1280 * 720 * 4].chunks_exact(4).map(|pixel| pixel.try_into().unwrap()).collect()
+}
+
+#[test]
+fn a_window_fills_its_monitor_shows_pictures_there_and_closes_and_another_monitor_is_refused() {
+    let Some(folder) = std::env::var_os("SCOTOPIC_XVFB_FOLDER") else {
+        let Some(display) = Display::start() else {
+            eprintln!("skipped: Xvfb is not installed");
+            return;
+        };
+        // The display's name is handed to a second run of this test: changing it in a running process would not be sound.
+        let status = Command::new(std::env::current_exe().unwrap())
+            .args(["--nocapture", "a_window_fills"])
+            .env("SCOTOPIC_XVFB_FOLDER", &display.folder)
+            .env("DISPLAY", &display.name)
+            .env_remove("WAYLAND_DISPLAY")
+            .status();
+        assert!(status.unwrap().success());
+        return;
+    };
+    let screen = || screen(Path::new(&folder));
+
+    // Its only monitor is called `screen`: full-screen there, without any window manager.
+    let mut window = open(&ProjectorAddress::Window(Some("screen".into())), Placement::default()).unwrap();
+    assert_eq!(window.describe(), "window on screen");
     let mut picture = Picture::black(1024, 768);
     picture.pixels_mut().fill([1.0, 0.0, 0.0]);
-    for _ in 0..3 {
-        window.present(&picture).unwrap();
-    }
-    if let Some(seconds) = std::env::var("SCOTOPIC_LOOK_S").ok().and_then(|text| text.parse().ok()) {
-        std::thread::sleep(std::time::Duration::from_secs(seconds));
-    }
+    picture.row_mut(0)[0] = [0.0, 1.0, 0.0];
+    window.present(&picture).unwrap();
+    let lit = screen();
+    let red = lit.iter().filter(|pixel| pixel[..3] == [0, 0, 255]).count();
+    // 960 x 720 of it are the picture, the rest is black.
+    assert!((960 * 720 - 4..=960 * 720).contains(&red), "{red}");
+    assert_eq!(lit.iter().filter(|pixel| pixel[..3] == [0, 0, 0]).count(), 320 * 720);
+    // The canvas' upper left corner is the picture's upper left corner.
+    assert!(lit[160][1] > 200, "{:?}", lit[160]);
     window.dark().unwrap();
+    assert!(screen().iter().all(|pixel| pixel[..3] == [0, 0, 0]));
     drop(window);
 
     // One process may open a display's event loop once only; a second time is an error, not a panic.

@@ -6,10 +6,17 @@ use super::Failure;
 
 /// Its light, in cd/m2 at the eyepiece.
 pub mod light;
+/// What could be a projector on this computer.
+pub mod outputs;
+/// Test patterns.
+pub mod pattern;
 
 /// The projector by itself.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
+    scotopic projector outputs                                             what could be a projector here\n  \
+    scotopic projector pattern finder --projector kms:HDMI-A-2             which way up?\n  \
+    scotopic projector pattern grid --out grid.png --pixels 1280x720       a look, without a projector\n  \
     scotopic projector --module dlpc2607 --bus 1 status\n  \
     scotopic projector --module dlpc2607 --bus 1 measure light.toml --projector fb:/dev/fb0\n  \
     scotopic projector --module dlpc2607 --bus 1 --calibration light.toml luminance 0.3\n  \
@@ -27,6 +34,10 @@ pub struct Arguments {
 enum Command {
     #[command(flatten)]
     Light(light::Command),
+    /// Show a test pattern: grid, cross, eyepieces, orientation, finder, ghost, greys or full
+    Pattern(pattern::Pattern),
+    /// List what could be a projector on this computer: connectors, framebuffers
+    Outputs,
 }
 
 /// Does it.
@@ -36,5 +47,7 @@ enum Command {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Light(command) => light::run(command, &arguments.light),
+        Command::Pattern(pattern) => pattern.run(&arguments.light),
+        Command::Outputs => outputs::run(arguments.light.json()),
     }
 }

@@ -22,6 +22,8 @@ pub mod geometry;
 mod ioctl;
 /// A display controller, without a desktop.
 pub mod kms;
+/// Whether a window stands on the monitor that was named.
+pub mod landing;
 /// A projector whose LEDs are driven too.
 pub mod lit;
 /// Pictures kept in memory, for tests and previews.
@@ -180,6 +182,9 @@ pub enum ProjectorError {
     /// Its LEDs are not as they were told.
     #[error("the projector's light: {0}")]
     Light(Box<crate::hw::light::LightError>),
+    /// The window is not where it should be.
+    #[error(transparent)]
+    Astray(#[from] landing::Astray),
     /// No monitor has that name.
     #[error("no monitor is called '{wanted}': there is {}", list(found))]
     NoMonitor {

@@ -95,7 +95,7 @@ pub struct Off {
     when_abandoned: bool,
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_number| format!("'{}' is no number of seconds", printable(text)))?;
     if seconds > 0.0 && seconds <= 604_800.0 {
         Ok(Duration::from_secs_f64(seconds))
@@ -126,6 +126,17 @@ pub fn run(command: &Command, which: &Which) -> Result<(), Failure> {
 }
 
 impl Which {
+    /// The settings, with the command line over their table `[light]`.
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
+        let settings = Settings::load(self.config.as_deref())?;
+        Ok(Settings { light: self.over(settings.light.clone()), ..settings })
+    }
+
+    /// Whether the answer is to be JSON.
+    pub(super) fn json(&self) -> bool {
+        self.json
+    }
+
     /// The command line over the settings.
     fn over(&self, light: Light) -> Light {
         Light {

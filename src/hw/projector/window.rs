@@ -1,31 +1,42 @@
-//! A window as projector: full-screen on the monitor that was named, else an ordinary window. It lives on a thread of its own.
+//! A window as projector: full-screen on the monitor that was named, else an ordinary window. It lives on a thread of its own,
+//! and stays black wherever else the display has put it.
 
 use std::num::NonZeroU32;
 use std::rc::Rc;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use softbuffer::{Context, Surface};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
-use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy, OwnedDisplayHandle};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy, OwnedDisplayHandle};
 use winit::monitor::MonitorHandle;
 use winit::platform::{wayland, x11};
 use winit::window::{Fullscreen, WindowId};
 
+use super::landing::{self, Astray, Place};
 use super::{Placement, Projector, ProjectorError};
 use crate::picture::{Picture, dither};
 
 /// How long a display may take to open a window.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What the window's thread is told.
+/// A window manager may take so long to put a window where it belongs.
+const SETTLING: Duration = Duration::from_secs(3);
+
+/// Until then it is looked at so often.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What came of showing something.
+type Done = Result<(), ProjectorError>;
+
+/// What the window's thread is told, and whom it tells when that is done.
 #[derive(Debug)]
 enum Show {
-    Picture(Picture),
-    Dark,
+    Picture(Picture, Sender<Done>),
+    Dark(Sender<Done>),
     Close,
 }
 
@@ -61,19 +72,26 @@ impl Window {
         Ok(Window { proxy, monitor, thread: Some(thread) })
     }
 
-    fn tell(&self, show: Show) -> Result<(), ProjectorError> {
-        let lost = |_| ProjectorError::Lost { path: "window".into(), why: "it was closed".into() };
-        self.proxy.send_event(show).map_err(lost)
+    /// Tells the thread, and waits until the window shows it.
+    fn ask(&self, show: impl FnOnce(Sender<Done>) -> Show) -> Done {
+        let (tell, told) = channel();
+        self.proxy.send_event(show(tell)).map_err(|_closed| lost("it was closed"))?;
+        told.recv_timeout(PATIENCE).unwrap_or_else(|error| {
+            Err(lost(match error {
+                RecvTimeoutError::Timeout => "the display does not answer",
+                RecvTimeoutError::Disconnected => "it was closed",
+            }))
+        })
     }
 }
 
 impl Projector for Window {
     fn present(&mut self, picture: &Picture) -> Result<(), ProjectorError> {
-        self.tell(Show::Picture(picture.clone()))
+        self.ask(|tell| Show::Picture(picture.clone(), tell))
     }
 
     fn dark(&mut self) -> Result<(), ProjectorError> {
-        self.tell(Show::Dark)
+        self.ask(Show::Dark)
     }
 
     fn describe(&self) -> String {
@@ -84,11 +102,15 @@ impl Projector for Window {
 impl Drop for Window {
     fn drop(&mut self) {
         // Closing a window leaves nothing of it on the screen.
-        let _ = self.tell(Show::Close);
+        let _ = self.proxy.send_event(Show::Close);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
+}
+
+fn lost(why: &str) -> ProjectorError {
+    ProjectorError::Lost { path: "window".into(), why: why.into() }
 }
 
 fn refused(why: &dyn std::fmt::Display) -> ProjectorError {
@@ -109,7 +131,8 @@ fn run(wanted: Option<String>, placement: Placement, tell: &Sender<Opened>) {
         Ok(context) => context,
         Err(error) => return drop(tell.send(Err(refused(&error)))),
     };
-    let mut screen = Screen { wanted, placement, tell, proxy, context, shown: None, picture: None };
+    let mut screen =
+        Screen { wanted, placement, tell, proxy, context, shown: None, picture: None, settling_since: None };
     if let Err(error) = events.run_app(&mut screen) {
         // If it had opened already nobody listens any more, and the next picture finds the loop gone.
         let _ = tell.send(Err(refused(&error)));
@@ -125,30 +148,72 @@ struct Screen<'a> {
     context: Context<OwnedDisplayHandle>,
     shown: Option<(Rc<winit::window::Window>, Pixels)>,
     picture: Option<Picture>,
+    /// Since when the window is open and its place is waited for; none once it has been told.
+    settling_since: Option<Instant>,
 }
 
 impl Screen<'_> {
-    /// Opens the window; the name of its monitor.
-    fn open(&mut self, events: &ActiveEventLoop) -> Result<String, ProjectorError> {
+    /// Opens the window, black.
+    fn open(&mut self, events: &ActiveEventLoop) -> Done {
         let monitor = self.wanted.as_deref().map(|name| find(events, name)).transpose()?;
-        let attributes = winit::window::Window::default_attributes()
-            .with_title("scotopic")
-            .with_inner_size(LogicalSize::new(1024, 768))
-            .with_fullscreen(monitor.map(|monitor| Fullscreen::Borderless(Some(monitor))));
+        let mut attributes = winit::window::Window::default_attributes().with_title("scotopic");
+        attributes = match monitor {
+            // Position and size too: where there is no window manager nobody else makes it fill its monitor.
+            Some(monitor) => attributes
+                .with_position(monitor.position())
+                .with_inner_size(monitor.size())
+                .with_decorations(false)
+                .with_fullscreen(Some(Fullscreen::Borderless(Some(monitor)))),
+            None => attributes.with_inner_size(LogicalSize::new(1024, 768)),
+        };
         let window = Rc::new(events.create_window(attributes).map_err(|error| refused(&error))?);
         window.set_cursor_visible(false);
         let surface = Surface::new(&self.context, Rc::clone(&window)).map_err(|error| refused(&error))?;
-        let landed = window.current_monitor().and_then(|monitor| monitor.name());
         self.shown = Some((window, surface));
-        self.draw()?;
-        Ok(landed.or(self.wanted.clone()).unwrap_or_else(|| "a monitor without a name".into()))
+        self.draw()
     }
 
-    /// Whether the window stands on another monitor than the one that was named: some displays place windows as they like.
-    fn astray(&self) -> Option<String> {
-        let wanted = self.wanted.as_deref()?;
-        let there = self.shown.as_ref()?.0.current_monitor()?.name()?;
-        (there != wanted).then_some(there)
+    /// Whether the window is on the monitor that was named; without a name it is right anywhere.
+    fn judged(&self) -> Result<(), Astray> {
+        let (Some(wanted), Some((window, _))) = (self.wanted.as_deref(), &self.shown) else { return Ok(()) };
+        let Ok(corner) = window.inner_position() else {
+            let landed = window.current_monitor().and_then(|monitor| monitor.name());
+            return landing::judge_by_name(landed.as_deref(), wanted);
+        };
+        let monitors: Vec<(String, Place)> = window
+            .available_monitors()
+            .filter_map(|monitor| {
+                let (corner, size) = (monitor.position(), monitor.size());
+                let place = Place { left: corner.x, top: corner.y, width: size.width, height: size.height };
+                Some((monitor.name()?, place))
+            })
+            .collect();
+        let size = window.inner_size();
+        let place = Place { left: corner.x, top: corner.y, width: size.width, height: size.height };
+        landing::judge(&monitors, place, wanted)
+    }
+
+    /// Tells that the window is open once it is where it belongs, or why it never came there.
+    fn settle(&mut self, events: &ActiveEventLoop) {
+        let Some(since) = self.settling_since else { return };
+        let opened = match self.judged() {
+            Ok(()) => {
+                let there = self.shown.as_ref().and_then(|(window, _)| window.current_monitor()?.name());
+                let name = self.wanted.clone().or(there).unwrap_or_else(|| "a monitor without a name".into());
+                Ok((self.proxy.clone(), name))
+            }
+            Err(_) if since.elapsed() < SETTLING => {
+                return events.set_control_flow(ControlFlow::WaitUntil(Instant::now() + LOOK));
+            }
+            Err(astray) => {
+                events.exit();
+                Err(ProjectorError::Astray(astray))
+            }
+        };
+        self.settling_since = None;
+        events.set_control_flow(ControlFlow::Wait);
+        // Nobody listens when opening took too long; then the next order finds the loop gone.
+        let _ = self.tell.send(opened);
     }
 
     fn draw(&mut self) -> Result<(), ProjectorError> {
@@ -174,32 +239,48 @@ impl Screen<'_> {
 
 impl ApplicationHandler<Show> for Screen<'_> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.shown.is_none() {
-            let opened = self.open(events).map(|monitor| (self.proxy.clone(), monitor));
-            if opened.is_err() {
+        if self.shown.is_some() {
+            return;
+        }
+        match self.open(events) {
+            Ok(()) => self.settling_since = Some(Instant::now()),
+            Err(error) => {
                 events.exit();
+                let _ = self.tell.send(Err(error));
             }
-            // Nobody listens when opening took too long; then the next order finds the loop gone.
-            let _ = self.tell.send(opened);
         }
     }
 
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        self.settle(events);
+    }
+
     fn user_event(&mut self, events: &ActiveEventLoop, show: Show) {
-        match show {
-            // The observer's own bright screen must not get the picture.
-            Show::Picture(_) if self.astray().is_some() => self.picture = None,
-            Show::Picture(picture) => self.picture = Some(picture),
-            Show::Dark => self.picture = None,
+        let (picture, told) = match show {
+            Show::Picture(picture, told) => (Some(picture), told),
+            Show::Dark(told) => (None, told),
             Show::Close => return events.exit(),
-        }
-        if self.draw().is_err() {
+        };
+        // The observer's own bright screen must not get the picture.
+        let judged = if picture.is_some() { self.judged() } else { Ok(()) };
+        self.picture = picture.filter(|_| judged.is_ok());
+        let drawn = self.draw();
+        if drawn.is_err() {
             events.exit();
         }
+        // Who has waited too long is gone.
+        let _ = told.send(drawn.and(judged.map_err(ProjectorError::Astray)));
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _id: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::Moved(_) | WindowEvent::Resized(_) if self.judged().is_err() => {
+                self.picture = None;
+                if self.draw().is_err() {
+                    events.exit();
+                }
+            }
             WindowEvent::RedrawRequested | WindowEvent::Resized(_) if self.draw().is_err() => events.exit(),
             _ => {}
         }

@@ -146,8 +146,9 @@ impl SimulatedDisplay {
 
     /// The same, which at its end writes its record to a file as one line of JSON.
     #[must_use]
-    pub fn reporting(self, report: Option<PathBuf>) -> SimulatedDisplay {
-        SimulatedDisplay { report, ..self }
+    pub fn reporting(mut self, report: Option<PathBuf>) -> SimulatedDisplay {
+        self.report = report;
+        self
     }
 
     /// A view of its record.
@@ -157,7 +158,7 @@ impl SimulatedDisplay {
     }
 
     /// Lets the beam read up to an instant.
-    fn scan(&mut self, now: Duration) {
+    pub(super) fn scan(&mut self, now: Duration) {
         let rows = self.whole.len();
         // Frames of which nothing has been read and that end before now are all alike: nothing is written in between.
         loop {
@@ -196,7 +197,8 @@ impl Buffers for SimulatedDisplay {
     }
 
     fn write(&mut self, buffer: usize, rows: &[(usize, Vec<u8>)]) -> Result<(), String> {
-        self.writing_since.get_or_insert(self.beat.now());
+        // The last writing before a flip is the picture's; what was blackened earlier is not.
+        self.writing_since = Some(self.beat.now());
         for (y, bytes) in rows {
             if let Beat::Made { now, row } = &mut self.beat {
                 *now += *row;

@@ -34,7 +34,7 @@ impl FromStr for Wanted {
             let (width, height) = size.split_once('x').ok_or_else(refused)?;
             width.parse().ok().zip(height.parse().ok()).ok_or_else(refused)
         });
-        let hz = parts.next().map(|hz| hz.parse().map_err(|_| refused()));
+        let hz = parts.next().map(|hz| hz.parse().map_err(|_number| refused()));
         if parts.next().is_some() {
             return Err(refused());
         }
@@ -336,7 +336,7 @@ mod tests {
         empty[1].connectors[1].connected = false;
         assert_eq!(plan(&empty, &[], &wanted), Err(KmsError::Empty("HDMI-A-2".into())));
         let mut twice = pi();
-        twice[0].connectors.push(twice[1].connectors[1].clone());
+        twice[0].connectors = twice[1].connectors.clone();
         assert!(plan(&twice, &[], &wanted).unwrap_err().to_string().contains("card0 and card1"));
         let mut full = pi();
         full[1].connectors[1].possible = vec![1];
