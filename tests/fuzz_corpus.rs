@@ -15,7 +15,13 @@ type Check = fn(&[u8]);
 
 /// Each target.
 const TARGETS: &[(&str, Check)] = &[
+    ("calibration", targets::calibration::check),
+    ("handbox_bytes", targets::handbox_bytes::check),
+    ("i2c_answers", targets::i2c_answers::check),
+    ("key_map", targets::key_map::check),
     ("mount_replies", targets::mount_replies::check),
+    ("placement", targets::placement::check),
+    ("rig_file", targets::rig_file::check),
     ("settings", targets::settings::check),
     ("trace", targets::trace::check),
 ];

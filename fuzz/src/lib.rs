@@ -1,7 +1,13 @@
 //! What must hold whatever the bytes are, one module for each reader. The fuzz targets call `check` with what libFuzzer thinks
 //! up; `tests/fuzz_corpus.rs` calls it with the inputs that were kept, so that no tool but cargo is needed for that.
 
+pub mod calibration;
+pub mod handbox_bytes;
+pub mod i2c_answers;
+pub mod key_map;
 pub mod mount_replies;
+pub mod placement;
+pub mod rig_file;
 mod script;
 pub mod settings;
 pub mod trace;
