@@ -13,7 +13,7 @@ if [ -f "$kept" ]; then
     while read -r line; do
         number=$((number + 1))
         # hexadecimal -> octal escapes -> bytes
-        printf '%b' "$(printf '%s' "$line" | sed 's/../0x& /g' | xargs -n1 printf '\\0%03o')" >"corpus/$target/kept-$number"
+        printf '%b' "$(printf '%s' "${line#!}" | sed 's/../0x& /g' | xargs -n1 printf '\\0%03o')" >"corpus/$target/kept-$number"
     done <"$kept"
 fi
 

@@ -29,7 +29,8 @@ const TARGETS: &[(&str, Check)] = &[
 fn inputs(target: &str) -> Vec<Vec<u8>> {
     let text = fs::read_to_string(format!("fixtures/fuzz/{target}.hex")).unwrap();
     let byte = |digits: &[u8]| u8::from_str_radix(str::from_utf8(digits).unwrap(), 16).unwrap();
-    text.lines().map(|line| line.as_bytes().chunks(2).map(byte).collect()).collect()
+    // Lines that begin with an exclamation mark were findings once.
+    text.lines().map(|line| line.trim_start_matches('!').as_bytes().chunks(2).map(byte).collect()).collect()
 }
 
 #[test]

@@ -127,7 +127,7 @@ fn brightest() -> f64 {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
     /// It is no TOML, or has a wrong key.
-    #[error("the calibration cannot be read: {0}")]
+    #[error("the calibration cannot be read: {}", shown(.0.message()))]
     Toml(Box<toml::de::Error>),
     /// Too few steps.
     #[error(
@@ -185,7 +185,7 @@ pub enum CalibrationError {
     },
     /// A filter is listed twice, or has no sense.
     #[error(
-        "the filter '{name}' of the calibration, transmission {transmission}: give each filter once, with a transmission above 0 and below 1"
+        "the filter '{name}' of the calibration, transmission {transmission}: give each filter once, with a name that can be read and a transmission above 0 and below 1"
     )]
     Filter {
         /// Its name.
@@ -322,13 +322,18 @@ fn check_values(sheet: &Sheet) -> Result<(), CalibrationError> {
     Ok(())
 }
 
+/// Words from a file as a terminal can be shown them.
+fn shown(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(200).collect()
+}
+
 fn check_filters(filters: &[Filter]) -> Result<(), CalibrationError> {
     for (place, filter) in filters.iter().enumerate() {
         let twice = filters[..place].iter().any(|other| other.name == filter.name);
         let inside = filter.transmission > 0.0 && filter.transmission < 1.0;
-        if twice || !inside || place >= MOST_ROWS {
-            let name = filter.name.chars().filter(|c| !c.is_control()).take(40).collect();
-            return Err(CalibrationError::Filter { name, transmission: filter.transmission });
+        let named = !filter.name.trim().is_empty() && filter.name == shown(&filter.name);
+        if twice || !inside || !named || place >= MOST_ROWS {
+            return Err(CalibrationError::Filter { name: shown(&filter.name), transmission: filter.transmission });
         }
     }
     Ok(())
