@@ -27,7 +27,7 @@ pub struct Score {
     heard: bool,
     /// Presses with the same set of bytes as most others, less the badly formed characters.
     agree: isize,
-    /// A press and its release that differ in bit 7 alone, and nothing else.
+    /// A press and its release that differ in bit 7 alone, and nothing else (bounces aside).
     pair: bool,
     /// Whether bit 7 is ever clear: neither too slow nor too fast.
     low: bool,
@@ -48,7 +48,7 @@ pub fn score(trial: &Trial) -> Score {
     Score {
         heard: !all.is_empty(),
         agree: small(commonest.map_or(0, alike)) - small(trial.malformed),
-        pair: is_pair(&all),
+        pair: is_pair(&all) && trial.presses.iter().map(Vec::len).min() == Some(2),
         low: all.iter().any(|byte| byte & 0x80 == 0),
         odd: all.iter().any(|byte| byte & 1 == 1),
         baud: trial.baud,

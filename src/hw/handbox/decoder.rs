@@ -265,3 +265,6 @@ impl Decoder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

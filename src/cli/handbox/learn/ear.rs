@@ -11,7 +11,7 @@ use crate::hw::handbox::learn::replay::Note;
 use crate::hw::handbox::tap::Tap;
 
 /// A press is over after so much silence.
-const QUIET: Duration = Duration::from_millis(700);
+const QUIET: Duration = Duration::from_millis(600);
 /// A press that does not come by then will not come.
 const PATIENCE: Duration = Duration::from_secs(30);
 /// More bytes of one press are not waited for.
