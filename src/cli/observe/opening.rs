@@ -7,6 +7,7 @@ use super::clock::Clock;
 use super::projection::Projection;
 use crate::app::bindings::Bindings;
 use crate::app::model::Opening;
+use crate::cli::projector::light;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::{self, State};
@@ -61,6 +62,7 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
     let placement = settings.placement.mirrored(instrument.projector.must_mirror());
     let projector = projector::open(&address, placement).map_err(Failure::failed)?;
+    let projector = light::lit(projector, &settings.light)?;
     let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), ..Eye::default() };
 
     let state_path = if simulated { None } else { state::default_path() };

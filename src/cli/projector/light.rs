@@ -109,17 +109,22 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 /// # Errors
 /// A sentence that says what is wrong and what to do.
 pub fn run(command: &Command, which: &Which) -> Result<(), Failure> {
-    // Who names both is understood without settings: darkness must not depend on a file that somebody is editing.
-    let named = which.module.is_some() && which.bus.is_some() && which.config.is_none();
-    let light = if named && matches!(command, Command::Off(_)) {
-        Light::default()
-    } else {
-        Settings::load(which.config.as_deref())?.light
+    let light = match Settings::load(which.config.as_deref()) {
+        Ok(settings) => settings.light,
+        // Darkness must not depend on a file that somebody is editing.
+        Err(error) if matches!(command, Command::Off(_)) => {
+            eprintln!("scotopic: {}", printable(&error.to_string()));
+            which.config.as_deref().map(Light::salvaged).unwrap_or_default()
+        }
+        Err(error) => return Err(error.into()),
     };
     let light = which.over(light);
     match command {
         Command::Status => status(&light, which.json),
         Command::Luminance(luminance) => luminance.run(&light, which.json),
+        Command::Off(_) if which.config.is_some() && light.module.is_none() && light.bus.is_none() => {
+            answer("nothing to do: the settings name no module in their table [light]")
+        }
         Command::Off(Off { when_abandoned }) => off(&light, *when_abandoned, which.json),
         Command::Measure(measure) => measure.run(&light),
     }
@@ -222,7 +227,7 @@ fn lamp(light: &Light, cd_m2: f64) -> Result<Lamp, Failure> {
     // What cannot be asked is told before the bus is touched.
     light::plan(cd_m2, &calibration, fitted.as_ref()).map_err(Failure::asked)?;
     let lamp = Lamp::ready(controller(light)?, calibration, fitted, cd_m2, Box::new(Wall::begun()));
-    lamp.map_err(Failure::failed)
+    lamp.and_then(|lamp| lamp.turned_to(light.input)).map_err(Failure::failed)
 }
 
 /// The process that makes it dark if this one is killed.
@@ -238,9 +243,16 @@ fn guard(light: &Light) -> Result<Guard, Failure> {
 }
 
 fn status(light: &Light, json: bool) -> Result<(), Failure> {
+    // What was measured is told too, where it is known; a calibration that is not right must not hide the module.
+    let measured = light.calibration.as_ref().map(|_| calibration(light));
+    let measured = measured.transpose().unwrap_or_else(|failure| {
+        eprintln!("scotopic: {}", printable(&failure.to_string()));
+        None
+    });
     let mut controller = controller(light)?;
     let mut wall = Wall::begun();
     let status = controller.status(&mut Within::new(&mut wall, POWER_UP)).map_err(Failure::failed)?;
+    let white = measured.and_then(|(calibration, fitted)| calibration.white_cd_m2(status.codes, fitted.as_ref()));
     if json {
         return answer_json(&json!({
             "chip": status.identity.chip,
@@ -248,6 +260,7 @@ fn status(light: &Light, json: bool) -> Result<(), Failure> {
             "leds": status.leds,
             "lit": status.leds != 0,
             "codes": status.codes,
+            "white_cd_m2": white,
             "curtain": status.curtain,
             "complaints": status.complaints,
         }));
@@ -256,6 +269,9 @@ fn status(light: &Light, json: bool) -> Result<(), Failure> {
     answer(&format!("LEDs       {}", leds(status.leds)))?;
     let [red, green, blue] = status.codes;
     answer(&format!("codes      red {red}, green {green}, blue {blue}"))?;
+    if let Some(white) = white {
+        answer(&format!("white      {white:.4} cd/m2 at the eyepiece while the LEDs are on, by the calibration"))?;
+    }
     answer(&format!("curtain    {}", if status.curtain { "drawn" } else { "open" }))?;
     let complaints = if status.complaints.is_empty() { "none".into() } else { status.complaints.join(", ") };
     answer(&format!("complaints {complaints}"))

@@ -273,6 +273,18 @@ impl Calibration {
         })
     }
 
+    /// What a full white picture has at the eyepiece with these LED codes, cd/m2. None where nothing was measured, or if the
+    /// codes are not balanced as they were measured.
+    #[must_use]
+    pub fn white_cd_m2(&self, codes: [u16; 3], fitted: Option<&Filter>) -> Option<f64> {
+        let share = self.sheet.balance.iter().copied().fold(0.0, f64::max);
+        let code = (f64::from(codes.into_iter().max().unwrap_or(0)) / share).round() as u16;
+        if self.codes(code) != codes {
+            return None;
+        }
+        Some(self.curve.at(code)? * fitted.map_or(1.0, |filter| filter.transmission))
+    }
+
     /// The codes of the three LEDs for one code of the table.
     #[must_use]
     pub fn codes(&self, code: u16) -> [u16; 3] {
@@ -371,3 +383,6 @@ fn check_rows(sheet: &Sheet) -> Result<(), CalibrationError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

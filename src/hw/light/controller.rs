@@ -106,13 +106,19 @@ impl Controller {
         for exchange in wire::exchanges(self.module, setting) {
             self.exchange(&exchange, within)?;
         }
-        for bytes in wire::propagation(self.module, setting) {
-            self.write(Doing::Propagating, &bytes, within)?;
-        }
-        if wire::propagation(self.module, setting).is_empty() {
+        let propagation = wire::propagation(self.module, setting);
+        if propagation.is_empty() {
             return Ok(());
         }
-        self.await_compound(within)
+        // Whether it was understood cannot be read back. Said twice, one wrong bit on the bus does not leave the old currents
+        // in force.
+        for _ in 0..2 {
+            for bytes in &propagation {
+                self.write(Doing::Propagating, bytes, within)?;
+            }
+            self.await_compound(within)?;
+        }
+        Ok(())
     }
 
     /// Lights the LEDs: off first, automatic brightness off, currents, mirrors and curtain, and at last the LEDs. If anything
@@ -149,6 +155,26 @@ impl Controller {
             let _ = self.leds_off(within);
         }
         done
+    }
+
+    /// Turns the module to its parallel input, behind the curtain and with the LEDs off: after power-up a DLPC2607 shows its
+    /// maker's picture. The curtain opens with the next [`Controller::light`].
+    ///
+    /// # Errors
+    /// As [`Controller::set`]; or how this chip is turned is not known.
+    pub fn take_parallel_input(&mut self, within: &mut Within<'_>) -> Result<(), LightError> {
+        let Identity { id, chip } = self.identify(within)?;
+        if self.module == Module::Dlpc34xx && id != Module::Dlpc34xx.usual_id() {
+            return Err(LightError::NoInput { chip });
+        }
+        self.set(Setting::Enable(0), within)?;
+        self.set(Setting::Curtain(true), within)?;
+        self.set(Setting::ParallelInput, within)?;
+        if self.module == Module::Dlpc34xx {
+            // TI's script waits a second before it opens the curtain.
+            within.wait(Duration::from_secs(1));
+        }
+        Ok(())
     }
 
     /// Switches the LEDs off and nothing else: the quick way to darkness.
@@ -257,3 +283,6 @@ fn again(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

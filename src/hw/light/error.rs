@@ -22,6 +22,8 @@ pub enum Doing {
     Curtain,
     /// Parking the mirrors.
     Park,
+    /// Turning to the picture's input.
+    Input,
     /// Switching the automatic brightness off.
     Automatic,
 }
@@ -35,6 +37,7 @@ impl fmt::Display for Doing {
             Doing::Propagating => "passing on the LED currents",
             Doing::Curtain => "the curtain",
             Doing::Park => "the mirrors' parking",
+            Doing::Input => "the picture's input",
             Doing::Automatic => "the automatic brightness",
         })
     }
@@ -65,6 +68,12 @@ pub enum LightError {
     /// It answers but does not become ready.
     #[error("the {chip} answers but does not become ready: give it more time after power-up, or switch it off and on")]
     NotReady {
+        /// The chip.
+        chip: &'static str,
+    },
+    /// How to turn it to its input is not known.
+    #[error("how a {chip} is turned to its input is not known here: its board does it; say input = \"as-it-is\"")]
+    NoInput {
         /// The chip.
         chip: &'static str,
     },

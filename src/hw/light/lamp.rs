@@ -18,11 +18,22 @@ pub const ENDING: Duration = Duration::from_secs(1);
 /// So often is a lit lamp asked whether it still is as it was told: a module may reset itself.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
+/// Where the module's picture comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Input {
+    /// Wherever it is turned to.
+    #[default]
+    AsItIs,
+    /// Its parallel input: the module is turned there at the start, and again after it has reset itself.
+    Parallel,
+}
+
 /// A lamp of known luminance.
 pub struct Lamp {
     controller: Controller,
     calibration: Calibration,
     fitted: Option<Filter>,
+    input: Input,
     pace: Box<dyn Pace>,
     plan: Plan,
     /// The LEDs are on, or may be.
@@ -55,7 +66,25 @@ impl Lamp {
         }
         controller.leds_off(&mut within)?;
         let looked = pace.now();
-        Ok(Lamp { controller, calibration, fitted, pace, plan, lit: false, looked, relit: 0 })
+        let input = Input::AsItIs;
+        Ok(Lamp { controller, calibration, fitted, input, pace, plan, lit: false, looked, relit: 0 })
+    }
+
+    /// The same lamp with its module turned to an input.
+    ///
+    /// # Errors
+    /// As [`Controller::take_parallel_input`].
+    pub fn turned_to(mut self, input: Input) -> Result<Lamp, LightError> {
+        self.input = input;
+        self.turn(POWER_UP)?;
+        Ok(self)
+    }
+
+    fn turn(&mut self, time: Duration) -> Result<(), LightError> {
+        match self.input {
+            Input::AsItIs => Ok(()),
+            Input::Parallel => self.controller.take_parallel_input(&mut Within::new(&mut *self.pace, time)),
+        }
     }
 
     /// How the luminance is made.
@@ -142,6 +171,7 @@ impl Lamp {
         self.relit += 1;
         // Whoever sits there now is asked again who it is.
         self.controller.identify(&mut Within::new(&mut *self.pace, SWITCHING))?;
+        self.turn(POWER_UP)?;
         self.controller.light(self.plan.drive, &mut Within::new(&mut *self.pace, SWITCHING))
     }
 

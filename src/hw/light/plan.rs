@@ -152,7 +152,7 @@ pub fn dimmed(asked_cd_m2: f64, calibration: &Calibration, fitted: Option<&Filte
         let fitted = fitted.map(|filter| filter.name.clone());
         return Err(PlanError::TooBright { asked: asked_cd_m2, brightest: top.white * transmission, fitted });
     }
-    let step = curve.at_least(module.min(top.white)).filter(|step| step.white <= top.white).unwrap_or(top);
+    let step = curve.at_least(module.min(top.white)).unwrap_or(top);
     let gain = (module / step.white).min(1.0);
     let (black, source) = match step.black {
         Some(black) => (black, Source::Measured),
@@ -218,3 +218,6 @@ impl Plan {
         self.contrast >= 0.9 * CONTRAST
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,6 +30,8 @@ pub enum Setting {
     Curtain(bool),
     /// The mirrors in their resting place. A DLPC34xx parks by its PROJ_ON line, not over I2C: nothing is sent.
     Parked(bool),
+    /// The picture from the parallel input, in the module's own size. Of the DLPC34xx this is for the DLPC3436 only.
+    ParallelInput,
     /// The controller of a DLPC34xx chooses the currents by itself.
     AutomaticCurrent(bool),
     /// The three CAIC bytes of a DLPC34xx (content adaptive illumination control).
@@ -107,6 +109,10 @@ fn exchanges_2607(setting: Setting) -> Vec<Exchange> {
             .collect(),
         Setting::Curtain(drawn) => vec![Exchange::register(Doing::Curtain, 0xA6, u32::from(drawn), 0xFF)],
         Setting::Parked(parked) => vec![Exchange::register(Doing::Park, 0x2D, u32::from(parked), 1)],
+        // nHD landscape, then the parallel port as source (a working Raspberry Pi configuration: tregota/rpi4-dlpdlcr2000evm).
+        Setting::ParallelInput => {
+            vec![Exchange::register(Doing::Input, 0x0C, 0x1B, 0x1F), Exchange::register(Doing::Input, 0x0B, 0, 7)]
+        }
         Setting::AutomaticCurrent(_) | Setting::Caic(_) => Vec::new(),
     }
 }
@@ -120,6 +126,14 @@ fn exchanges_34xx(setting: Setting) -> Vec<Exchange> {
         }
         Setting::Curtain(drawn) => vec![Exchange::opcode(Doing::Curtain, 0x16, &[u8::from(drawn)], &[0x0F])],
         Setting::Parked(_) => Vec::new(),
+        // TI's init_parallel_mode.py for the DLPDLCR230NP: source, 1920 x 1080, actuator, RGB666, sync.
+        Setting::ParallelInput => vec![
+            Exchange::opcode(Doing::Input, 0x05, &[1, 0], &[7, 1]),
+            Exchange::opcode(Doing::Input, 0x60, &[0x80, 0x07, 0x38, 0x04], &[0xFF; 4]),
+            Exchange::opcode(Doing::Input, 0xAE, &[1], &[1]),
+            Exchange::opcode(Doing::Input, 0x6D, &[2], &[0x0F]),
+            Exchange::opcode(Doing::Input, 0x6B, &[0x02], &[0x0F]),
+        ],
         Setting::AutomaticCurrent(on) => vec![Exchange::opcode(Doing::Automatic, 0x50, &[u8::from(on)], &[1])],
         Setting::Caic(bytes) => vec![Exchange::opcode(Doing::Automatic, 0x84, &bytes, &[0xCF, 0xFF, 0xFF])],
     }

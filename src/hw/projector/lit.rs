@@ -86,3 +86,6 @@ impl Drop for Lit {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

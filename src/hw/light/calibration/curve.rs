@@ -40,6 +40,15 @@ impl Curve {
         self.0.first().copied()
     }
 
+    /// Full white at a code, cd/m2, by a straight line between the measured steps.
+    pub(in crate::hw::light) fn at(&self, code: u16) -> Option<f64> {
+        self.0.windows(2).find_map(|pair| {
+            let (from, to) = (f64::from(pair[0].code), f64::from(pair[1].code));
+            let share = (f64::from(code) - from) / (to - from);
+            (0.0..=1.0).contains(&share).then(|| pair[0].white + share * (pair[1].white - pair[0].white))
+        })
+    }
+
     /// The dimmest code that gives at least this, between the measured steps by a straight line; at most the brightest step.
     pub(in crate::hw::light) fn at_least(&self, cd_m2: f64) -> Option<Step> {
         let above = self.0.iter().position(|step| step.white >= cd_m2);

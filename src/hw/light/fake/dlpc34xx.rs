@@ -15,7 +15,7 @@ const MOST: u8 = 0x5C;
 const CAIC: u8 = 0x84;
 
 /// Write opcode, the read opcode that answers it, and the bytes after the opcode.
-const OPCODES: [(u8, u8, usize); 14] = [
+const OPCODES: [(u8, u8, usize); 15] = [
     (0x05, 0x06, 2),
     (0x0D, 0x0E, 1),
     (0x14, 0x15, 1),
@@ -26,6 +26,7 @@ const OPCODES: [(u8, u8, usize); 14] = [
     (CURRENT, 0x55, 6),
     (MOST, 0x5D, 6),
     (0x60, 0x61, 4),
+    (0x6B, 0x6C, 1),
     (0x6D, 0x6E, 1),
     (CAIC, 0x85, 3),
     (0xAE, 0xAF, 1),
