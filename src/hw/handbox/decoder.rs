@@ -173,7 +173,7 @@ impl Decoder {
     /// When the silence after the last byte will have ended what is open.
     fn gap_at(&self) -> Option<Duration> {
         let open = !self.frame.is_empty() || self.escape.is_open();
-        self.last.filter(|_| open).map(|last| last + Duration::from_millis(self.map.framing().gap_ms))
+        self.last.filter(|_| open).map(|last| last.saturating_add(Duration::from_millis(self.map.framing().gap_ms)))
     }
 
     /// A byte that is a frame of its own.

@@ -106,11 +106,11 @@ impl Presses {
         let held = at.saturating_sub(since);
         if !state.told {
             if held >= LONG {
-                heard.push(pressed(key, true, since + LONG));
+                heard.push(pressed(key, true, since.saturating_add(LONG)));
                 state.told = true;
             } else if held < RELEASE_BOUNCE {
                 // Nobody taps so fast: this may be a bounce, and the key still be down.
-                state.pending = Some(at + RELEASE_BOUNCE);
+                state.pending = Some(at.saturating_add(RELEASE_BOUNCE));
             } else {
                 heard.push(pressed(key, false, at));
                 state.told = true;
@@ -133,7 +133,7 @@ impl Presses {
             }
             if let Some(since) = state.down.filter(|since| !state.told && now.saturating_sub(*since) >= LONG) {
                 state.told = true;
-                heard.push(pressed(key, true, since + LONG));
+                heard.push(pressed(key, true, since.saturating_add(LONG)));
             }
         }
     }
@@ -144,7 +144,7 @@ impl Presses {
         let of = |state: &State| match state {
             state if state.stuck => state.quiet_at(),
             state => {
-                let long = state.down.filter(|_| !state.told).map(|since| since + LONG);
+                let long = state.down.filter(|_| !state.told).map(|since| since.saturating_add(LONG));
                 [state.pending, long].into_iter().flatten().min()
             }
         };
@@ -176,7 +176,7 @@ impl State {
 
     /// When a stuck key will have been silent long enough.
     fn quiet_at(&self) -> Option<Duration> {
-        self.last_press.max(self.last_release).map(|last| last + SILENCE)
+        self.last_press.max(self.last_release).map(|last| last.saturating_add(SILENCE))
     }
 
     /// Tells the short press that was held back, and the one whose release was missed.

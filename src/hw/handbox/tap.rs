@@ -24,8 +24,8 @@ use crate::hw::port::PortError;
 
 /// The first pause before a lost port is opened again; each further one is twice as long.
 const FIRST_PAUSE: Duration = Duration::from_millis(250);
-/// The longest pause.
-const LONGEST_PAUSE: Duration = Duration::from_secs(2);
+/// The longest pause: a plug that is put back is heard within a second.
+const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 /// The longest wait for a byte, and how often the listener shows that it is alive.
 const LOOK: Duration = Duration::from_millis(100);
 
