@@ -66,30 +66,41 @@ const AUTOSTAR: &[(&str, &str)] = &[("?", "next-eyepiece"), ("?~", "menu"), ("UP
 const CLASSIC: &[(&str, &str)] =
     &[("NEXT", "next-eyepiece"), ("NEXT~", "menu"), ("PREV", "previous-eyepiece"), ("PREV~", "overlay")];
 
-/// A keyboard on a serial line, for trying things out: a letter a command.
+/// A terminal or a box of one's own: none of its keys does anything on the mount, so that each can have a command.
 const ASCII: &[(&str, &str)] = &[
     ("?", "next-eyepiece"),
-    ("m", "menu"),
-    ("j", "menu-down"),
-    ("k", "menu-up"),
-    ("o", "overlay"),
-    ("i", "picture"),
-    ("f", "facts"),
-    ("v", "animation"),
-    ("+", "brighter"),
-    ("-", "dimmer"),
-    ("n", "next-object"),
-    ("h", "help"),
+    ("MODE", "menu"),
+    ("UP", "menu-up"),
+    ("DOWN", "menu-down"),
+    ("ENTER", "menu-choose"),
+    ("0", "menu-close"),
+    ("1", "overlay"),
+    ("2", "picture"),
+    ("3", "facts"),
+    ("4", "animation"),
+    ("5", "dimmer"),
+    ("6", "brighter"),
+    ("7", "next-object"),
+    ("8", "help"),
+    ("9", "previous-eyepiece"),
 ];
 
-/// A presenter's or gamepad's keys.
+/// A presenter or a gamepad: two keys go through eyepieces and lines, a third opens the menu and chooses.
 const PRESENTER: &[(&str, &str)] = &[
-    ("next", "next-eyepiece"),
-    ("previous", "menu"),
-    ("up", "menu-up"),
-    ("down", "menu-down"),
-    ("select", "menu-choose"),
-    ("back", "menu-close"),
+    ("DOWN", "next-eyepiece"),
+    ("UP", "previous-eyepiece"),
+    ("ENTER", "menu"),
+    ("?", "overlay"),
+    ("?~", "picture"),
+    ("MODE", "menu-close"),
+    ("1", "overlay"),
+    ("2", "picture"),
+    ("3", "facts"),
+    ("4", "animation"),
+    ("5", "dimmer"),
+    ("6", "brighter"),
+    ("7", "next-object"),
+    ("8", "help"),
 ];
 
 impl Press {
@@ -242,9 +253,9 @@ mod tests {
 
     #[test]
     fn settings_change_and_take_away() {
-        let bindings = Bindings::of_profile("ascii").with([("?", "menu"), ("n", NOTHING), ("~", "facts")]).unwrap();
+        let bindings = Bindings::of_profile("ascii").with([("?", "menu"), ("7", NOTHING), ("~", "facts")]).unwrap();
         assert_eq!(bindings.meaning("?", false), Some(Action::Menu));
-        assert_eq!(bindings.meaning("n", false), None);
+        assert_eq!(bindings.meaning("7", false), None);
         assert_eq!(bindings.meaning("~", false), Some(Action::Facts), "a key may be called ~");
         assert!(Bindings::of_profile("autostar2-guess").long_is_meant("?") && !bindings.long_is_meant("?"));
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::key::Key;
+use crate::hw::handbox::Pressed;
 use crate::hw::mount::belief::Belief;
 use crate::hw::mount::order::Report;
 use crate::picture::Picture;
@@ -13,6 +14,8 @@ use crate::safety::suspend::Clocks;
 pub enum Event {
     /// A key was pressed.
     Key(Key),
+    /// A key of the hand controller was pressed.
+    Handbox(Pressed),
     /// Time has passed: the clocks, read together.
     Clocks(Clocks),
     /// The mount told something.

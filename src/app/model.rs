@@ -292,10 +292,12 @@ impl Model {
     /// The name of the object in the field that would be the next target; the list is nearest first.
     #[must_use]
     pub fn next_in_field(&self) -> Option<&str> {
-        let current = self.target.as_ref();
-        let current = current.and_then(|target| self.field.iter().position(|listed| listed.name == target.name));
+        // Stars without a name are listed as stars only.
+        let names: Vec<&str> =
+            self.field.iter().map(|listed| listed.name.as_str()).filter(|name| *name != "star").collect();
+        let current = self.target.as_ref().and_then(|target| names.iter().position(|name| *name == target.name));
         let next = current.map_or(0, |place| place + 1);
-        self.field.get(next).or(self.field.first()).map(|listed| listed.name.as_str())
+        names.get(next).or(names.first()).copied()
     }
 
     /// Opens a page of the menu in the eyepiece.

@@ -25,6 +25,11 @@ pub fn update(model: &mut Model, event: Event) -> Vec<Effect> {
             effects.extend(refresh::refreshed(model));
             effects
         }
+        Event::Handbox(pressed) => {
+            let mut effects = handbox::pressed(model, &pressed);
+            effects.extend(refresh::refreshed(model));
+            effects
+        }
         Event::Clocks(clocks) => {
             let mut effects = time::passed(model, clocks);
             effects.extend(refresh::refreshed(model));

@@ -3,8 +3,35 @@
 use super::keys;
 use crate::app::commands::Action;
 use crate::app::effect::Effect;
+use crate::app::log::Weight;
 use crate::app::menu::{LINES, Page};
 use crate::app::model::Model;
+use crate::hw::handbox::Pressed;
+
+/// A key of the hand controller was pressed. What the terminal would say of it is said in the eyepiece too: there may be no
+/// terminal.
+pub(super) fn pressed(model: &mut Model, pressed: &Pressed) -> Vec<Effect> {
+    model.counts.presses += 1;
+    let Some(action) = model.opening.bindings.meaning(&pressed.key, pressed.long) else { return Vec::new() };
+    // With one key only, the same press that steps through the eyepieces steps through the lines.
+    let action = match (model.menu.as_ref().map(|menu| &menu.page), action) {
+        (None | Some(Page::Eyepieces), action) => action,
+        (Some(_), Action::NextEyepiece) => Action::MenuDown,
+        (Some(_), Action::PreviousEyepiece) => Action::MenuUp,
+        (Some(_), action) => action,
+    };
+    let before = model.banner.take();
+    let effects = keys::done(model, action);
+    match (&model.banner, before) {
+        (_, Some(alarm)) if alarm.weight == Weight::Alarm => model.banner = Some(alarm),
+        (None, before) => model.banner = before,
+        (Some(said), _) => {
+            let text = said.sentence();
+            model.open_menu(Page::Says(text));
+        }
+    }
+    effects
+}
 
 /// A command of the menu itself.
 pub(super) fn in_menu(model: &mut Model, action: Action) -> Vec<Effect> {

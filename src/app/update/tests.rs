@@ -6,12 +6,17 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::*;
+use crate::app::bindings::Bindings;
+use crate::app::commands::Action;
 use crate::app::key::{Arrow, Key};
 use crate::app::log::Weight;
+use crate::app::menu::Page;
 use crate::app::model::{Opening, Projector, Screen};
+use crate::app::scene::Scene;
 use crate::hw::mount::belief::{Belief, Known, LinkState};
 use crate::hw::mount::estimate::Estimate;
 use crate::hw::mount::order::{Order, Report};
+use crate::overlay::animation::Playable;
 use crate::picture::Picture;
 use crate::safety::suspend::Clocks;
 use crate::safety::{Rules, TurnCounter};
@@ -339,4 +344,203 @@ fn a_weaker_sun_rule_holds_only_after_the_words_were_typed_where_names_are_typed
     assert!(model.acknowledged.is_some() && orders(&effects).is_empty());
     assert_eq!(model.view.screen, Screen::Sky);
     assert!(model.banner.as_ref().is_some_and(|banner| banner.text.contains("5° from the Sun")), "{:?}", model.banner);
+}
+
+/// A press of the hand controller's keys: `?`, or `?~` for the long one.
+fn tapped(model: &mut Model, presses: &str) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for press in presses.split_whitespace() {
+        let press = crate::app::bindings::Press::named(press);
+        let at = model.time.now;
+        let pressed = crate::hw::handbox::Pressed { key: press.key, long: press.long, at };
+        effects.extend(update(model, Event::Handbox(pressed)));
+    }
+    effects
+}
+
+/// A session that tracks M31, with the keys of a profile.
+fn with_keys(profile: &str) -> Model {
+    let mut model = tracking();
+    model.opening.bindings = Bindings::of_profile(profile);
+    model
+}
+
+fn drawn(effects: &[Effect]) -> Option<&Scene> {
+    effects.iter().rev().find_map(|effect| if let Effect::Draw(scene) = effect { Some(&**scene) } else { None })
+}
+
+#[test]
+fn the_question_mark_steps_through_the_eyepieces_round_and_round_and_shows_the_list() {
+    let mut model = with_keys("autostar2-guess");
+    let count = model.instrument.eyepieces.len();
+    for step in 1..=count {
+        let effects = tapped(&mut model, "?");
+        assert_eq!(model.instrument.eyepiece_index(), step % count);
+        let menu = drawn(&effects).and_then(|scene| scene.menu.clone()).unwrap();
+        assert_eq!((menu.title.as_str(), menu.bar), ("eyepiece", Some(step % count)));
+        assert!(menu.lines[step % count].chosen);
+    }
+    assert_eq!(model.counts.presses, count as u64);
+}
+
+#[test]
+fn with_one_key_alone_every_line_of_the_menu_can_be_reached_and_chosen() {
+    for (line, action) in crate::app::menu::LINES.iter().enumerate() {
+        let mut model = with_keys("a-cable-of-ones-own");
+        let before = model.overlay;
+        let _ = tapped(&mut model, "?~");
+        assert_eq!(model.menu.as_ref().map(|menu| menu.page.clone()), Some(Page::Commands));
+        let _ = tapped(&mut model, &"? ".repeat(line));
+        assert_eq!(model.menu.as_ref().map(|menu| menu.bar), Some(line));
+        let next = model.next_in_field().map(str::to_owned);
+        let _ = tapped(&mut model, "?~");
+        let page = model.menu.as_ref().map(|menu| menu.page.clone());
+        match action {
+            Action::NextEyepiece => assert_eq!(page, Some(Page::Eyepieces)),
+            Action::OverlayMode => assert_eq!(model.overlay.mode, before.mode.next()),
+            Action::Photographs => assert!(!model.overlay.photographs),
+            Action::Facts => assert!(!model.overlay.facts),
+            Action::Animation => assert!(matches!(page, Some(Page::Says(text)) if text.contains("no animation of M31"))),
+            Action::OverlayBrighter => assert_eq!(model.overlay.brightness, before.brightness + 1),
+            Action::OverlayDimmer => assert_eq!(model.overlay.brightness, before.brightness - 1),
+            Action::NextObject => assert_eq!(model.target.map(|target| target.name), next),
+            Action::EyepieceHelp => assert_eq!(page, Some(Page::Help)),
+            _ => assert_eq!(page, None),
+        }
+    }
+}
+
+#[test]
+fn the_menu_goes_away_by_itself_and_the_next_press_is_an_eyepiece_again() {
+    let mut model = with_keys("autostar2-guess");
+    let _ = tapped(&mut model, "?~ ?");
+    let until = model.menu.as_ref().map(|menu| menu.until).unwrap();
+    assert_eq!(model.wake_at(), Some(until), "the loop must wake for it");
+    let _ = update(&mut model, told(believed(here(), Motion::Tracking, 11.0)));
+    for quarter in 5..=45 {
+        let seconds = f64::from(quarter) / 4.0;
+        let _ = update(&mut model, told(believed(here(), Motion::Tracking, seconds)));
+        let effects = update(&mut model, clocks(EVENING, seconds));
+        assert_eq!(model.menu.is_some(), Duration::from_secs_f64(seconds) < until, "{seconds}");
+        if model.menu.is_none() {
+            assert_eq!(drawn(&effects).map(|scene| scene.menu.is_none()), Some(true), "drawn anew without it");
+            break;
+        }
+    }
+    assert!(model.menu.is_none());
+    let index = model.instrument.eyepiece_index();
+    let _ = tapped(&mut model, "?");
+    assert_eq!(model.instrument.eyepiece_index(), index + 1);
+}
+
+#[test]
+fn switched_off_the_picture_is_dark_but_the_menu_is_still_drawn_and_never_in_a_slew() {
+    let mut model = with_keys("ascii");
+    assert_eq!(tapped(&mut model, "1 1"), Vec::from_iter(drawn_then_dark(&model)), "over, beside, off");
+    let effects = tapped(&mut model, "MODE");
+    let scene = drawn(&effects).unwrap();
+    assert!(scene.mode == crate::overlay::Mode::Off && scene.menu.is_some());
+    assert_eq!(tapped(&mut model, "0"), [Effect::Dark], "closed: dark again");
+
+    let _ = tapped(&mut model, "MODE");
+    let slewing = Belief { slewing_to: Some(here()), ..believed(here(), Motion::Slewing, 2.0) };
+    let _ = update(&mut model, clocks(EVENING, 2.0));
+    assert_eq!(update(&mut model, told(slewing)), [Effect::Dark]);
+    assert_eq!(tapped(&mut model, "DOWN ENTER ?"), [], "nothing is drawn while it moves");
+}
+
+/// What two presses of the overlay's key give: a picture beside, then dark.
+fn drawn_then_dark(model: &Model) -> [Effect; 2] {
+    let mut other = with_keys("ascii");
+    other.time = model.time;
+    let effects = tapped(&mut other, "1");
+    assert_eq!(drawn(&effects).map(|scene| scene.mode), Some(crate::overlay::Mode::Beside));
+    [effects.into_iter().next_back().unwrap(), Effect::Dark]
+}
+
+#[test]
+fn keys_with_commands_of_their_own_do_them_at_once() {
+    let mut model = with_keys("ascii");
+    let effects = tapped(&mut model, "2");
+    assert!(!drawn(&effects).unwrap().photographs);
+    let effects = tapped(&mut model, "3");
+    assert!(!drawn(&effects).unwrap().facts);
+    let brighter = drawn(&tapped(&mut model, "6")).unwrap().brightness;
+    assert!(brighter > drawn(&tapped(&mut model, "5")).unwrap().brightness);
+    let effects = tapped(&mut model, "8");
+    let help = drawn(&effects).and_then(|scene| scene.menu.clone()).unwrap();
+    assert!(help.lines.iter().any(|line| line.label == "?" && line.value == "eyepiece"), "{help:?}");
+}
+
+#[test]
+fn an_animation_plays_for_its_object_stands_in_a_slew_and_is_missed_aloud() {
+    let mut model = with_keys("ascii");
+    let playable = Playable { object: "M31".into(), frames: 4, frames_per_second: 2.0 };
+    model.opening.animations = vec![Playable { object: "M57".into(), ..playable.clone() }, playable];
+    let effects = tapped(&mut model, "4");
+    assert_eq!(drawn(&effects).unwrap().animation, Some((1, 0)));
+    let due = model.wake_at().unwrap();
+    assert!((due.as_secs_f64() - 1.6).abs() < 1e-6, "half a second after 1.1 s: {due:?}");
+    let effects = update(&mut model, clocks(EVENING, 1.7));
+    assert_eq!(drawn(&effects).unwrap().animation, Some((1, 1)));
+
+    let slewing = Belief { slewing_to: Some(here()), ..believed(here(), Motion::Slewing, 1.8) };
+    let _ = update(&mut model, told(slewing));
+    let _ = update(&mut model, clocks(EVENING, 3.8));
+    let _ = update(&mut model, told(believed(here(), Motion::Tracking, 3.8)));
+    assert_eq!(model.drawn.as_ref().unwrap().animation, Some((1, 1)), "it stood while the mount moved");
+
+    assert_eq!(drawn(&tapped(&mut model, "4")).unwrap().animation, None);
+    model.target = Some(object("M33", here_j2000()));
+    let effects = tapped(&mut model, "4");
+    let said = drawn(&effects).and_then(|scene| scene.menu.clone()).unwrap();
+    let words: Vec<&str> = said.lines.iter().map(|line| line.label.as_str()).collect();
+    assert!(words.join(" ").contains("there is no animation of M33"), "{words:?}");
+}
+
+fn here_j2000() -> Equatorial<J2000> {
+    Equatorial::new(Angle::degrees(11.0), Angle::degrees(41.4))
+}
+
+#[test]
+fn while_the_menu_is_open_the_keyboards_enter_chooses_and_goes_nowhere() {
+    let mut model = tracking();
+    let _ = press(&mut model, "M");
+    let _ = update(&mut model, Event::Key(Key::Arrow(Arrow::Down)));
+    let effects = press(&mut model, "\n");
+    assert!(orders(&effects).is_empty(), "{effects:?}");
+    assert_eq!(model.overlay.mode, crate::overlay::Mode::Beside);
+    let _ = update(&mut model, Event::Key(Key::Backspace));
+    assert!(model.menu.is_none() && !model.nudged());
+    assert_eq!(orders(&update(&mut model, Event::Key(Key::Esc))), [&Order::Stop], "stop is stop");
+}
+
+#[test]
+fn an_alarm_is_not_put_away_by_the_hand_controller() {
+    let mut model = with_keys("ascii");
+    model.say(Weight::Alarm, "STOPPED: the Sun", "");
+    let _ = tapped(&mut model, "4 ? 7");
+    assert_eq!(model.banner.as_ref().map(|banner| banner.weight), Some(Weight::Alarm));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Whatever is pressed on a tapped hand controller, bound to whatever may be bound: nothing moves, and a stop stops.
+    #[test]
+    fn no_tapped_keys_in_any_order_move_a_telescope(presses in prop::collection::vec((0usize..60, any::<bool>()), 0..40)) {
+        let mut model = tracking();
+        let mut bindings = Bindings::default();
+        for (index, command) in crate::app::commands::COMMANDS.iter().enumerate() {
+            let (short, long) = (format!("{index}"), format!("{index}~"));
+            bindings = bindings.clone().with([(short.as_str(), command.id), (long.as_str(), command.id)]).unwrap_or(bindings);
+        }
+        model.opening.bindings = bindings;
+        for (index, long) in presses {
+            let press = if long { format!("{index}~") } else { format!("{index}") };
+            for order in orders(&tapped(&mut model, &press)) {
+                prop_assert!(matches!(order, Order::Stop | Order::Compare | Order::ReadDisplay), "{:?}", order);
+            }
+        }
+    }
 }
