@@ -10,6 +10,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use self::settings::Settings;
 
+/// A folder of the observer's animations.
+pub mod animations;
 /// The catalogue files that are built into the program.
 pub mod catalogue;
 /// How a subcommand ends without doing what was asked.
@@ -171,6 +173,11 @@ fn answer_bytes(bytes: &[u8]) -> Result<(), Failure> {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::failed(error)),
         _ => Ok(()),
     }
+}
+
+/// A note on standard error.
+pub(crate) fn note(sentence: &str) {
+    let _ = writeln!(std::io::stderr(), "scotopic: {}", printable(sentence));
 }
 
 /// Text from outside without control characters, so that it cannot move the cursor or colour the screen. Line ends stay.

@@ -176,10 +176,10 @@ mod tests {
 
     #[test]
     fn a_long_sentence_is_broken_between_words() {
-        let lines = wrapped("there is no animation of M31: put one beside the photographs");
+        let lines = wrapped("there is no animation of M31: put one beside your photographs");
         assert!(lines.len() >= 2 && lines.iter().all(|line| line.label.chars().count() <= WIDEST), "{lines:?}");
         let words: Vec<&str> = lines.iter().map(|line| line.label.as_str()).collect();
-        assert_eq!(words.join(" "), "there is no animation of M31: put one beside the photographs");
+        assert_eq!(words.join(" "), "there is no animation of M31: put one beside your photographs");
         assert_eq!(wrapped(&"x".repeat(500))[0].label.len(), WIDEST);
     }
 }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::Failure;
+use crate::hw::handbox::source::Source;
 use crate::hw::mount::address::MountAddress;
 use crate::hw::projector::ProjectorAddress;
 use crate::sky::site::Site;
@@ -16,6 +17,8 @@ use crate::sky::time::Utc;
 mod clock;
 /// The supervisor beside an open line.
 mod guard;
+/// The hand controller's keys.
+mod handbox;
 /// What must be remembered over restarts.
 mod keeper;
 /// The line to the mount: a thread, or stepped by a virtual clock.
@@ -24,12 +27,16 @@ mod line;
 mod opening;
 /// Pictures to the projector, and how old they are when they get there.
 mod projection;
+/// The conversation with the mount, written down.
+mod record;
 /// The one event loop.
 mod session;
 /// SIGTERM, SIGINT, SIGHUP.
 pub(super) mod signals;
 /// What a session without a terminal ends with.
 mod summary;
+/// The service manager's watchdog.
+mod watchdog;
 
 /// What the session is opened with. Everything left out comes from the settings file, then from the defaults.
 #[derive(Debug, Clone, Default, Args)]
@@ -38,6 +45,8 @@ mod summary;
     scotopic observe --mount serial:/dev/serial/by-id/usb-FTDI_...-if00-port0\n  \
     scotopic observe --mount tcp:192.168.4.1:4030 --projector fb:/dev/fb0\n  \
     scotopic observe --site -24.6,-70.4,2635 --time 2026-11-22T02:00:00Z\n  \
+    scotopic observe --headless --handbox /dev/serial/by-id/usb-...-if00-port0 --projector fb:/dev/fb0
+  \
     scotopic observe --headless --for 60 --goto M31 --projector png:frames\n  \
     scotopic observe --headless --for 21600 --fast            six hours of a simulated night in a minute")]
 pub struct Arguments {
@@ -59,8 +68,20 @@ pub struct Arguments {
     /// Run without a terminal; ends with a JSON summary on standard output
     #[arg(long)]
     pub headless: bool,
-    /// How long a session without a terminal lasts, in seconds
-    #[arg(long = "for", value_name = "SECONDS", requires = "headless", required_if_eq("headless", "true"))]
+    /// The hand controller's keys: the tapping adapter's /dev/serial/by-id/NAME, evdev:/dev/input/by-id/NAME, or display
+    #[arg(long, value_name = "SOURCE")]
+    pub handbox: Option<Source>,
+    /// Its key map: lx200-classic, autostar2-guess, ascii, or a file [default: the settings', else autostar2-guess]
+    #[arg(long, value_name = "MAP", requires = "handbox")]
+    pub handbox_map: Option<String>,
+    /// Folder of your photographs and animations [default: the settings']
+    #[arg(long, value_name = "DIR")]
+    pub photographs: Option<PathBuf>,
+    /// Write all that passes between mount and computer to this file, without the site
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// How long a session without a terminal lasts, in seconds [default: until it is asked to end]
+    #[arg(long = "for", value_name = "SECONDS", requires = "headless")]
     pub seconds: Option<f64>,
     /// Without a terminal: search this and go there as soon as the mount answers (may be given many times)
     #[arg(long, value_name = "NAME", requires = "headless")]
@@ -78,11 +99,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
     if !terminal && !arguments.headless {
         return Err(Failure::asked(
-            "there is no terminal here to draw the session in: start it in a terminal, or add --headless --for SECONDS",
+            "there is no terminal here to draw the session in: start it in a terminal, or add --headless",
         ));
     }
     let seconds = arguments.seconds.unwrap_or(f64::INFINITY);
-    if arguments.headless && !(seconds > 0.0 && seconds <= 604_800.0) {
+    if arguments.seconds.is_some() && !(seconds > 0.0 && seconds <= 604_800.0) {
         return Err(Failure::Asked(format!(
             "--for {seconds} is no length of a session: give 1 to 604800 seconds (a week)"
         )));

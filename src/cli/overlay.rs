@@ -1,7 +1,6 @@
 //! `scotopic overlay`: one picture as the projector would show it, without a session.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -9,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::settings::Settings;
-use super::{Failure, answer, answer_json, photographs};
+use super::{Failure, answer, answer_json, note, photographs};
 use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style};
 use crate::picture::png;
 use crate::pipeline::{self, Frame, View};
@@ -267,10 +266,6 @@ fn pair(text: &str) -> Result<(f64, f64), String> {
         Some(&[right, down]) => Ok((right, down)),
         _ => Err("a nudge is two numbers of pixels, right and down, like 12,-30".into()),
     }
-}
-
-fn note(sentence: &str) {
-    let _ = writeln!(std::io::stderr(), "scotopic: {}", super::printable(sentence));
 }
 
 fn now() -> Utc {

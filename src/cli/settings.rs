@@ -18,6 +18,8 @@ use disk::Disk;
 pub mod disk;
 /// What is wrong in a TOML file, in words, with the nearest right key.
 pub mod explain;
+/// The hand controller.
+pub mod handbox;
 /// The projector's light.
 pub mod light;
 /// What the program remembers from session to session.
@@ -49,6 +51,8 @@ pub struct Settings {
     pub placement: Placement,
     /// The projector's light.
     pub light: light::Light,
+    /// The hand controller.
+    pub handbox: handbox::Handbox,
     /// The safety rules.
     pub rules: Rules,
 }
@@ -64,6 +68,7 @@ impl Default for Settings {
             sky_brightness_mag_arcsec2: 20.8,
             placement: Placement::default(),
             light: light::Light::default(),
+            handbox: handbox::Handbox::default(),
             rules: Rules::default(),
         }
     }
@@ -149,6 +154,7 @@ impl Settings {
         let folder = path.parent().unwrap_or(Path::new(""));
         settings.instrument = settings.instrument.map(|file| folder.join(file));
         settings.photographs = settings.photographs.map(|file| folder.join(file));
+        settings.handbox = settings.handbox.based_at(folder);
         settings.light = settings.light.based_at(folder);
         Ok(settings)
     }
@@ -162,6 +168,7 @@ impl Settings {
         let out_of_range = |what: String| explain::Wrong { line: None, what };
         settings.rules.checked().map_err(|error: RuleError| out_of_range(error.to_string()))?;
         settings.placement.checked().map_err(|error: PlacementError| out_of_range(error.to_string()))?;
+        settings.handbox.checked().map_err(out_of_range)?;
         if !(10.0..=25.0).contains(&settings.sky_brightness_mag_arcsec2) {
             return Err(out_of_range(format!(
                 "sky_brightness_mag_arcsec2 = {} is out of range: give 16 (a city) to 22.2 (the darkest sky)",
@@ -260,6 +267,9 @@ mod tests {
             ("[placement]\nrigth_px = 1", "did you mean 'right_px'?"),
             ("mount = ", "line"),
             ("mount = 7", "string"),
+            ("[handbox.keys]\n\"5\" = \"go-to\"", "it moves the telescope"),
+            ("[handbox.keys]\n\"5\" = \"menue\"", "did you mean 'menu'?"),
+            ("[handbox]\nsource = \"usb\"", "no source of keys"),
         ] {
             let wrong = Settings::from_toml(text).unwrap_err();
             let said = format!("line {:?}: {}", wrong.line, wrong.what);

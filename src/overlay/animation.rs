@@ -1,6 +1,42 @@
-//! Moving pictures of an object: what can be played, and which frame is due.
+//! Moving pictures of an object: read, and which frame is due. Frames are kept as bytes, and become light when they are drawn.
 
 use std::time::Duration;
+
+use super::photograph::{Photograph, Plate};
+use crate::picture::{Picture, srgb};
+
+/// Reading animations from the bytes of files.
+pub mod read;
+
+/// A frame as bytes of red, green and blue, row by row.
+type Frame = Vec<[u8; 3]>;
+
+/// An animation and where it belongs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Animation {
+    /// What can be told of it without its frames.
+    pub playable: Playable,
+    /// What it is called: its file's name without the ending.
+    pub name: String,
+    /// Who made it.
+    pub credit: Option<String>,
+    plate: Plate,
+    width: usize,
+    frames: Vec<Frame>,
+}
+
+impl Animation {
+    /// A frame, ready to be drawn; the last one when there are not so many.
+    #[must_use]
+    pub fn frame(&self, index: usize) -> Option<Photograph> {
+        let frame = self.frames.get(index).or(self.frames.last())?;
+        let mut picture = Picture::black(self.width, frame.len() / self.width.max(1));
+        for (light, bytes) in picture.pixels_mut().iter_mut().zip(frame) {
+            *light = bytes.map(srgb::from_byte);
+        }
+        Some(Photograph::new(self.name.clone(), self.credit.clone(), self.plate, picture))
+    }
+}
 
 /// An animation that can be played.
 #[derive(Debug, Clone, PartialEq)]

@@ -187,7 +187,7 @@ fn animate(model: &mut Model) {
     let name = model.target.as_ref().map_or_else(|| "what is in the field".to_owned(), |target| target.name.clone());
     if model.animation().is_none() {
         let text = format!("there is no animation of {name}");
-        model.say(Weight::Note, &text, "put one beside the photographs (docs/observing.md)");
+        model.say(Weight::Note, &text, "put one beside your photographs");
         return;
     }
     model.overlay.animation = true;

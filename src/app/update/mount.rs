@@ -94,6 +94,8 @@ fn heard(model: &mut Model, report: &Report) {
                 model.note(text);
             }
         }
+        // Read several times a second where its keys are watched.
+        Report::Display => {}
         _ => model.note(text),
     }
 }

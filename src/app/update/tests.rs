@@ -400,7 +400,9 @@ fn with_one_key_alone_every_line_of_the_menu_can_be_reached_and_chosen() {
             Action::OverlayMode => assert_eq!(model.overlay.mode, before.mode.next()),
             Action::Photographs => assert!(!model.overlay.photographs),
             Action::Facts => assert!(!model.overlay.facts),
-            Action::Animation => assert!(matches!(page, Some(Page::Says(text)) if text.contains("no animation of M31"))),
+            Action::Animation => {
+                assert!(matches!(page, Some(Page::Says(text)) if text.contains("no animation of M31")));
+            }
             Action::OverlayBrighter => assert_eq!(model.overlay.brightness, before.brightness + 1),
             Action::OverlayDimmer => assert_eq!(model.overlay.brightness, before.brightness - 1),
             Action::NextObject => assert_eq!(model.target.map(|target| target.name), next),

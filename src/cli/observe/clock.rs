@@ -42,6 +42,14 @@ impl Clock {
         matches!(self, Clock::Virtual { .. })
     }
 
+    /// The program's start on the machine's clock.
+    pub(super) fn start(&self) -> Instant {
+        match self {
+            Clock::Real { start, .. } => *start,
+            Clock::Virtual { .. } => Instant::now(),
+        }
+    }
+
     /// Since the program started.
     pub(super) fn now(&self) -> Duration {
         match self {

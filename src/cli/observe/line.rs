@@ -25,8 +25,8 @@ pub(super) enum Word {
 
 /// The line to the mount.
 pub(super) enum Line {
-    /// A thread turns the pump.
-    Thread(Sender<Word>),
+    /// A thread turns the pump, and shows when it did last.
+    Thread(Sender<Word>, Alive),
     /// The session turns it.
     Stepped(Box<Pump>),
 }
@@ -43,15 +43,26 @@ impl Line {
         told: impl FnMut(Said) -> bool + Send + 'static,
     ) -> std::io::Result<Line> {
         let (words, heard) = channel();
-        thread::Builder::new().name("mount".into()).spawn(move || turn(pump, clock, &alive, &heard, told))?;
-        Ok(Line::Thread(words))
+        let turned = Alive::default();
+        turned.now(clock.now());
+        let shows = turned.clone();
+        thread::Builder::new().name("mount".into()).spawn(move || turn(pump, clock, (&alive, &shows), &heard, told))?;
+        Ok(Line::Thread(words, turned))
+    }
+
+    /// Whether the thread turns. Opening a port may take it seconds.
+    pub(super) fn alive(&self, now: Duration) -> bool {
+        match self {
+            Line::Thread(_, turned) => turned.within(Duration::from_secs(10), now),
+            Line::Stepped(_) => true,
+        }
     }
 
     /// Gives an order.
     pub(super) fn order(&mut self, order: Order, now: Duration) {
         match self {
             // A thread that has ended has told so: the session is ending.
-            Line::Thread(words) => drop(words.send(Word::Order(order))),
+            Line::Thread(words, _) => drop(words.send(Word::Order(order))),
             Line::Stepped(pump) => pump.order(order, now),
         }
     }
@@ -59,13 +70,13 @@ impl Line {
     /// Forgets all that is believed and asks anew.
     pub(super) fn forget(&mut self, ours: Ours, now: Duration) {
         match self {
-            Line::Thread(words) => drop(words.send(Word::Forget(ours))),
+            Line::Thread(words, _) => drop(words.send(Word::Forget(ours))),
             Line::Stepped(pump) => pump.forget(ours, now),
         }
     }
 }
 
-/// When the session's loop turned last. Its life is what the supervisor must know of, not this thread's.
+/// When a loop turned last. The session's life is what the supervisor must know of, not this thread's.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Alive(Arc<AtomicU64>);
 
@@ -77,7 +88,12 @@ impl Alive {
 
     /// Whether the loop turned within the last second.
     fn is(&self, now: Duration) -> bool {
-        now.saturating_sub(Duration::from_millis(self.0.load(Ordering::Relaxed))) < Duration::from_secs(1)
+        self.within(Duration::from_secs(1), now)
+    }
+
+    /// Whether it turned within so long.
+    fn within(&self, patience: Duration, now: Duration) -> bool {
+        now.saturating_sub(Duration::from_millis(self.0.load(Ordering::Relaxed))) < patience
     }
 }
 
@@ -89,10 +105,17 @@ pub(super) enum Said {
     Unguarded(String),
 }
 
-fn turn(mut pump: Pump, clock: Clock, alive: &Alive, heard: &Receiver<Word>, mut told: impl FnMut(Said) -> bool) {
+fn turn(
+    mut pump: Pump,
+    clock: Clock,
+    (alive, turned): (&Alive, &Alive),
+    heard: &Receiver<Word>,
+    mut told: impl FnMut(Said) -> bool,
+) {
     let mut guarded = Guarded::default();
     loop {
         let now = clock.now();
+        turned.now(now);
         let update = pump.step(now);
         let unguarded = guarded.watch(&pump, alive.is(now), now);
         let said =

@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use super::Arguments;
 use super::clock::Clock;
+use super::handbox::{self, Handbox};
 use super::projection::Projection;
-use crate::app::bindings::Bindings;
+use super::record;
 use crate::app::model::Opening;
 use crate::cli::projector::light;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::{self, State};
-use crate::cli::{Failure, overlay, photographs};
+use crate::cli::{Failure, animations, overlay, photographs};
 use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{self, Ours};
 use crate::hw::mount::link::{self, Opener, Pump};
@@ -36,6 +37,8 @@ pub(super) struct Opened {
     pub(super) projection: Projection,
     /// Where turns and nudge are kept over restarts; nowhere for a simulated telescope, which begins anew.
     pub(super) state_path: Option<PathBuf>,
+    /// The hand controller, to be listened to.
+    pub(super) handbox: Handbox,
     /// What should be told once the session runs.
     pub(super) notices: Vec<String>,
 }
@@ -53,12 +56,17 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
             "--fast makes time pass, which a real telescope cannot: leave it out, or use --mount sim",
         ));
     }
+    let mut handbox =
+        handbox::prepare(arguments.handbox.as_ref(), arguments.handbox_map.as_deref(), &settings.handbox, &mount)?;
     let site = arguments.site.or(settings.site).or_else(|| simulated.then(|| Simulated::default().site));
     let begin = begin(arguments, simulated, site);
     let clock = if arguments.fast { Clock::made(begin) } else { Clock::real(begin) };
     let ours = Ours { utc_at_start: clock.utc_at_start(), site };
     let instrument = overlay::instrument(settings.instrument.as_deref(), None)?;
-    let opener = opener(&mount, site, ours.utc_at_start)?;
+    let mut opener = opener(&mount, site, ours.utc_at_start)?;
+    if let Some(path) = &arguments.record {
+        opener = record::recorded(opener, path, &mount.to_string())?;
+    }
     let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
     let placement = settings.placement.mirrored(instrument.projector.must_mirror());
     let projector = projector::open(&address, placement).map_err(Failure::failed)?;
@@ -67,11 +75,15 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
 
     let state_path = if simulated { None } else { state::default_path() };
     let (state, notice) = state_path.as_ref().map_or((State::default(), None), |path| State::load(path, &mut Files));
-    let (photographs, mut notices) = match &settings.photographs {
-        Some(folder) => photographs::read_folder(folder)?,
-        None => Default::default(),
-    };
+    let (mut photographs, mut animations, mut notices) = (Vec::new(), Vec::new(), Vec::new());
+    if let Some(folder) = arguments.photographs.as_ref().or(settings.photographs.as_ref()) {
+        let (stills, notes) = photographs::read_folder(folder)?;
+        let (moving, more) = animations::read_folder(folder)?;
+        (photographs, animations) = (stills, moving);
+        notices.extend(notes.into_iter().chain(more));
+    }
     notices.extend(notice);
+    notices.extend(std::mem::take(&mut handbox.notices));
     let (east, north) = state.nudge.angles();
     let opening = Opening {
         instrument,
@@ -83,12 +95,12 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         nudge: Nudge { east, north },
         mount: mount.to_string(),
         projector: address.to_string(),
-        bindings: Bindings::default(),
-        animations: Vec::new(),
+        bindings: handbox.bindings.clone(),
+        animations: animations.iter().map(|animation| animation.playable.clone()).collect(),
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
-    let projection = Projection::new(projector, photographs, eye);
-    Ok(Opened { opening, clock, ours, pump, projection, state_path, notices })
+    let projection = Projection::new(projector, photographs, eye).with_animations(animations);
+    Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, notices })
 }
 
 /// When the session begins: as stated; with a simulated telescope in the middle of the coming night, so that a newcomer at

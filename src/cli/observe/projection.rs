@@ -8,6 +8,7 @@ use super::clock::Clock;
 use crate::app::scene::Scene;
 use crate::hw::projector::output::{Output, Stamp, Told};
 use crate::hw::projector::{Dimmed, Nowhere, Projector};
+use crate::overlay::animation::Animation;
 use crate::overlay::{Composer, Eye, Photograph, Style};
 use crate::picture::Picture;
 use crate::pipeline::{self, View};
@@ -51,6 +52,7 @@ pub(super) struct Projection {
     waiting: VecDeque<(Arc<Picture>, Origin)>,
     composer: Composer,
     photographs: Vec<Photograph>,
+    animations: Vec<Animation>,
     eye: Eye,
     /// Pictures that reached the projector.
     pub(super) frames: u64,
@@ -77,6 +79,7 @@ impl Projection {
             waiting: VecDeque::new(),
             composer: Composer::default(),
             photographs,
+            animations: Vec::new(),
             eye,
             frames: 0,
             ages: Ages::default(),
@@ -88,6 +91,12 @@ impl Projection {
             light: None,
             gain: 0.0,
         }
+    }
+
+    /// What can be played, in the order in which scenes number it.
+    pub(super) fn with_animations(mut self, animations: Vec<Animation>) -> Projection {
+        self.animations = animations;
+        self
     }
 
     /// Begins: from now on pictures can be shown, and `told` hears what came of them.
@@ -111,6 +120,7 @@ impl Projection {
         if self.light != Some(scene.brightness) {
             self.dim(scene.brightness);
         }
+        let playing = scene.animation.and_then(|(index, frame)| self.animations.get(index)?.frame(frame));
         let view = View {
             instrument: &scene.instrument,
             site: scene.site.as_ref(),
@@ -125,7 +135,7 @@ impl Projection {
                 labels: scene.facts,
                 ..Style::default()
             },
-            animation: None,
+            animation: playing.as_ref(),
             menu: scene.menu.as_ref(),
         };
         pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
@@ -150,8 +160,10 @@ impl Projection {
     /// Takes the stamp of a picture in, and gives the picture; none if it has become dark since.
     pub(super) fn stamped(&mut self, stamp: &Stamp) -> Option<Arc<Picture>> {
         let place = self.waiting.iter().position(|(_, origin)| origin.predicted_for == stamp.predicted_for)?;
-        // Those before it were overtaken.
-        let (picture, origin) = self.waiting.drain(..=place).next_back()?;
+        // Those before it were overtaken; a key that had changed one of them has changed this one.
+        let overtaken_key = self.waiting.iter().take(place).find_map(|(_, origin)| origin.key_at);
+        let (picture, mut origin) = self.waiting.drain(..=place).next_back()?;
+        origin.key_at = overtaken_key.or(origin.key_at);
         self.frames += 1;
         self.ages.add(stamp.age());
         if let Some(heard_at) = origin.heard_at {
@@ -199,6 +211,14 @@ impl Projection {
     /// Takes in what came of dimming; whether the picture must be drawn anew.
     pub(super) fn dimmed(&mut self, dimmed: &Dimmed) -> bool {
         std::mem::replace(&mut self.gain, dimmed.gain) != dimmed.gain
+    }
+
+    /// Whether the projector's thread lives and its device answers.
+    pub(super) fn alive(&self) -> bool {
+        match &self.screen {
+            Screen::Thread(output) => output.alive(),
+            Screen::Waiting(_) | Screen::Stepped(..) => true,
+        }
     }
 
     pub(super) fn describe(&self) -> String {

@@ -5,21 +5,24 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use super::clock::Clock;
+use super::handbox::{self, DisplayWatch, Listening};
 use super::keeper::Keeper;
 use super::line::{Alive, Line, Said};
 use super::opening::Opened;
 use super::projection::{Origin, Projection};
 use super::signals;
 use super::summary::Summary;
+use super::watchdog::Watchdog;
 use crate::app::key::Key;
 use crate::app::scene::Scene;
-use crate::app::{Effect, Event, Model, update};
+use crate::app::{Effect, Event, Model, update, words};
 use crate::cli::settings::state::{KeptNudge, State};
 use crate::cli::{Failure, answer_json};
+use crate::hw::handbox::Pressed;
 use crate::hw::mount::belief::LinkState;
 use crate::hw::mount::driver::Ours;
 use crate::hw::mount::link::Update;
-use crate::hw::mount::order::Report;
+use crate::hw::mount::order::{Order, Report};
 use crate::hw::projector::output::Told;
 use crate::sky::catalogue::Catalogue;
 use crate::sky::pointing::Motion;
@@ -32,6 +35,9 @@ const QUIET: Duration = Duration::from_millis(250);
 
 /// ... and in such while the field moves.
 const MOVING: Duration = Duration::from_millis(50);
+
+/// ... and in no shorter ones.
+const SHORTEST: Duration = Duration::from_millis(1);
 
 /// The screen is drawn at least so often, for the ages on it.
 const REDRAW: Duration = Duration::from_millis(500);
@@ -46,6 +52,7 @@ const LAST_STOP: Duration = Duration::from_millis(1500);
 enum Wake {
     Input(keys::Input),
     Mount(Box<Update>),
+    Handbox(handbox::Told),
     Notice(String),
     Projector(Told),
     AskedToEnd,
@@ -61,6 +68,10 @@ struct Session {
     projection: Projection,
     keeper: Keeper,
     alive: Alive,
+    handbox: Listening,
+    watchdog: Watchdog,
+    /// When the key of the hand controller was heard whose doing is drawn now.
+    key_at: Option<Duration>,
     screen: Option<(Taken, Depth)>,
     inbox: Receiver<Wake>,
     ended: bool,
@@ -129,7 +140,7 @@ fn listen(wakes: &Sender<Wake>) {
 
 impl Session {
     fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
-        let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices } = opened;
+        let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices, handbox } = opened;
         opening.projector = projection.describe();
         let told = wakes.clone();
         projection.start(clock, move |said| drop(told.send(Wake::Projector(said)))).map_err(Failure::failed)?;
@@ -144,6 +155,8 @@ impl Session {
         std::thread::spawn(|| drop(Catalogue::embedded().complete("M", 1)));
         let told = wakes.clone();
         signals::listen(move || drop(told.send(Wake::AskedToEnd))).map_err(Failure::failed)?;
+        let told = wakes.clone();
+        let handbox = handbox.listen(clock.start(), move |said| told.send(Wake::Handbox(said)).is_ok());
         let told = wakes.clone();
         let line = match clock {
             Clock::Real { .. } => Line::threaded(pump, clock, alive.clone(), move |said| {
@@ -163,6 +176,9 @@ impl Session {
             projection,
             keeper,
             alive,
+            handbox: handbox.map_err(Failure::failed)?,
+            watchdog: Watchdog::new(),
+            key_at: None,
             screen: None,
             inbox,
             ended: false,
@@ -175,8 +191,13 @@ impl Session {
     fn run(&mut self, mut over: impl FnMut(&mut Session) -> bool) -> Result<(), Failure> {
         self.happened(Event::Clocks(self.clock.read()));
         self.draw_screen()?;
+        self.watchdog.ready(self.clock.now());
         while !self.ended {
-            self.alive.now(self.clock.now());
+            let now = self.clock.now();
+            self.alive.now(now);
+            self.watchdog.turned(self.lives(now), now);
+            self.watchdog.status(&format!("{}, {}", words::link(&self.model).0, words::motion(&self.model)));
+            self.read_display(now);
             self.wait();
             self.happened(Event::Clocks(self.clock.read()));
             if over(self) {
@@ -195,6 +216,7 @@ impl Session {
                 }
             }
         }
+        self.watchdog.stopping();
         self.projection.dark(self.clock.now());
         self.see_it_stop();
         // What the projector has said in the meantime counts.
@@ -213,7 +235,11 @@ impl Session {
             return;
         }
         let moving = !matches!(self.model.belief.motion.value(), Some(Motion::Tracking));
-        let mut wake = match self.inbox.recv_timeout(if moving { MOVING } else { QUIET }) {
+        let longest = if moving { MOVING } else { QUIET };
+        let due =
+            [self.model.wake_at(), self.watchdog.wake_at(), self.handbox.watch.as_ref().map(DisplayWatch::wake_at)];
+        let due = due.into_iter().flatten().min().map_or(longest, |at| at.saturating_sub(self.clock.now()));
+        let mut wake = match self.inbox.recv_timeout(due.clamp(SHORTEST, longest)) {
             Ok(wake) => Some(wake),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => Some(Wake::AskedToEnd),
@@ -248,10 +274,54 @@ impl Session {
             Wake::Mount(update) => {
                 self.happened(Event::Clocks(self.clock.read()));
                 self.happened(Event::Mount(Box::new(update.belief), update.reports));
+                let now = self.clock.now();
+                if let Some(watch) = &mut self.handbox.watch
+                    && let Some(pressed) = watch.shown(&self.model.belief.display, now)
+                {
+                    self.pressed(pressed);
+                }
             }
-            Wake::Notice(text) => self.happened(Event::Notice(text)),
+            Wake::Handbox(handbox::Told::Pressed(pressed)) => self.pressed(pressed),
+            Wake::Handbox(handbox::Told::Notice(text)) | Wake::Notice(text) => self.notice(text),
             Wake::Projector(told) => self.projected(told),
             Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
+        }
+    }
+
+    /// A key of the hand controller. What it draws is timed from the instant that it was heard.
+    fn pressed(&mut self, mut pressed: Pressed) {
+        self.happened(Event::Clocks(self.clock.read()));
+        if self.clock.is_virtual() {
+            // The listener's clock is the machine's.
+            pressed.at = self.clock.now();
+        }
+        self.key_at = Some(pressed.at).filter(|_| !self.clock.is_virtual());
+        self.happened(Event::Handbox(pressed));
+        self.key_at = None;
+    }
+
+    /// Without a terminal the journal is all that there is to read.
+    fn notice(&mut self, text: String) {
+        if self.screen.is_none() {
+            crate::cli::note(&text);
+        }
+        self.happened(Event::Notice(text));
+    }
+
+    /// Whether all that must live lives: the projector, the line to the mount, the hand controller's listener.
+    fn lives(&self, now: Duration) -> bool {
+        self.projection.alive() && self.line.alive(now) && self.handbox.alive(now)
+    }
+
+    /// Reads the hand controller's display, when its keys come from there and the mount has time.
+    fn read_display(&mut self, now: Duration) {
+        let belief = &self.model.belief;
+        let free = belief.link == LinkState::Ready && !belief.slewing_by_order() && !belief.stopping;
+        if free
+            && let Some(watch) = &mut self.handbox.watch
+            && watch.is_due(now)
+        {
+            self.line.order(Order::ReadDisplay, now);
         }
     }
 
@@ -290,11 +360,11 @@ impl Session {
         let now = self.clock.now();
         let age = self.model.belief.position.age(now);
         let origin = Origin {
-            predicted_for: now,
+            predicted_for: self.model.time.now,
             heard_at: age.map(|age| now.saturating_sub(age)),
             // Under a virtual clock no time passes while a picture is made.
             fresh: fresh && !self.clock.is_virtual(),
-            key_at: None,
+            key_at: self.key_at,
         };
         let picture = Arc::new(self.projection.compose(scene));
         self.projection.show(&picture, origin, now);
@@ -308,7 +378,12 @@ impl Session {
                     self.happened(Event::Shown(picture));
                 }
             }
-            Told::Failed(error) => self.happened(Event::ProjectorFailed(error.to_string())),
+            Told::Failed(error) => {
+                if self.screen.is_none() {
+                    crate::cli::note(&error.to_string());
+                }
+                self.happened(Event::ProjectorFailed(error.to_string()));
+            }
             Told::Dimmed(dimmed) => {
                 if self.projection.dimmed(&dimmed)
                     && let Some(scene) = self.model.drawn.clone()
@@ -316,7 +391,7 @@ impl Session {
                     self.draw_picture(&scene, false);
                 }
                 if let Some(advice) = dimmed.advice {
-                    self.happened(Event::Notice(advice));
+                    self.notice(advice);
                 }
             }
             Told::Dark(_) => {}
@@ -342,7 +417,7 @@ impl Session {
     /// After the end: a stop that was ordered is seen through.
     fn see_it_stop(&mut self) {
         let deadline = self.clock.now() + LAST_STOP;
-        while matches!(self.line, Line::Thread(_)) && self.clock.now() < deadline {
+        while matches!(self.line, Line::Thread(..)) && self.clock.now() < deadline {
             let belief = &self.model.belief;
             if !(belief.slewing_by_order() || belief.moving_by_order || belief.stopping) {
                 return;

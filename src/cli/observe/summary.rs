@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::projection::{Ages, Projection};
 use crate::app::Model;
+use crate::overlay::Mode;
 
 /// Percentiles in milliseconds; null when there was nothing to measure.
 #[derive(Debug, Clone, Serialize)]
@@ -32,6 +33,14 @@ pub(super) struct Summary {
     frame_jitter_ms: Percentiles,
     /// Age of the reply, only for pictures that a new reply caused.
     reply_to_picture_ms: Percentiles,
+    /// Keys heard from the hand controller.
+    key_presses: u64,
+    /// From the instant that such a key was heard to the instant that the picture that it changed was there.
+    key_to_picture_ms: Percentiles,
+    /// The eyepiece that was in use at the end.
+    eyepiece_mm: f64,
+    /// Over, beside or off at the end.
+    overlay: Mode,
     /// Positions read.
     polls: u64,
     /// Commands sent again.
@@ -68,6 +77,10 @@ impl Summary {
             sample_age_ms: Percentiles::of(&projection.samples),
             frame_jitter_ms: Percentiles::of(&projection.jitter),
             reply_to_picture_ms: Percentiles::of(&projection.after_reply),
+            key_presses: model.counts.presses,
+            key_to_picture_ms: Percentiles::of(&projection.after_key),
+            eyepiece_mm: model.instrument.eyepiece().focal_length_mm,
+            overlay: model.overlay.mode,
             polls: counters.polls,
             retries: counters.retries,
             resyncs: counters.resyncs,

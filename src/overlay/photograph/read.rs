@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::{Photograph, Plate, wcs};
 use crate::picture::fits::{Fits, FitsError, LONGEST_SIDE};
 use crate::picture::{Picture, srgb};
-use crate::sky::coords::Equatorial;
+use crate::sky::coords::{Equatorial, J2000};
 use crate::units::Angle;
 
 /// Largest file that is read.
@@ -133,14 +133,32 @@ impl Beside {
                 return Err(PhotographError::Beside(format!("{key} is {value}: give {least} to {most}")));
             }
         }
-        if !(1e-3..=1e4).contains(&self.scale_arcsec_px) {
-            return Err(PhotographError::Scale(self.scale_arcsec_px));
+        let centre = Equatorial::new(Angle::degrees(self.ra_deg), Angle::degrees(self.dec_deg));
+        Plate::of_picture(centre, (width, height), self.scale_arcsec_px, self.angle_deg, self.flipped)
+    }
+}
+
+impl Plate {
+    /// The plate of a picture of so many columns and rows, of which the middle's place, the scale and the position angle of
+    /// its top (from north through east) are known.
+    ///
+    /// # Errors
+    /// A scale that no picture has.
+    pub(in crate::overlay) fn of_picture(
+        centre: Equatorial<J2000>,
+        (width, height): (f64, f64),
+        scale_arcsec_px: f64,
+        angle_deg: f64,
+        flipped: bool,
+    ) -> Result<Plate, PhotographError> {
+        if !(1e-3..=1e4).contains(&scale_arcsec_px) {
+            return Err(PhotographError::Scale(scale_arcsec_px));
         }
-        let scale = Angle::arcseconds(self.scale_arcsec_px).to_radians();
-        let up = Angle::degrees(self.angle_deg);
-        let right = up + Angle::degrees(if self.flipped { 90.0 } else { -90.0 });
+        let scale = Angle::arcseconds(scale_arcsec_px).to_radians();
+        let up = Angle::degrees(angle_deg);
+        let right = up + Angle::degrees(if flipped { 90.0 } else { -90.0 });
         Ok(Plate {
-            centre: Equatorial::new(Angle::degrees(self.ra_deg), Angle::degrees(self.dec_deg)),
+            centre,
             reference: DVec2::new(width, height) / 2.0,
             // Rows run downwards.
             matrix: DMat2::from_cols(DVec2::new(right.sin(), right.cos()), -DVec2::new(up.sin(), up.cos())) * scale,
