@@ -28,7 +28,7 @@ pub mod optics;
 pub mod overlay;
 /// A folder of the observer's photographs.
 pub mod photographs;
-/// The projector: its light.
+/// The projector by itself.
 pub mod projector;
 /// What the methods cost and what errors they make.
 pub mod report;
@@ -93,7 +93,7 @@ enum Command {
     Catalogue(catalogue::Command),
     /// Make one picture as the projector would show it, without a session
     Overlay(Box<overlay::Arguments>),
-    /// Drive the projector by itself: its light
+    /// Drive the projector by itself: its light, test patterns
     Projector(Box<projector::Arguments>),
     /// Say what the telescope shows with each eyepiece
     Optics(optics::Arguments),

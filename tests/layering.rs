@@ -41,6 +41,7 @@ const ADAPTERS: &[&str] = &[
     "src/hw/light/fake/stored.rs",
     "src/hw/light/guard.rs",
     "src/hw/port.rs",
+    "src/hw/projector.rs",
     "src/hw/serial.rs",
     "src/hw/pty.rs",
     "src/hw/handbox/presenter.rs",

@@ -7,6 +7,8 @@
 
 use crate::hw::i2c::{BusAddress, I2cBus, I2cError, linux};
 
+/// What the light costs dark-adapted eyes.
+pub mod adaptation;
 /// What somebody measured.
 pub mod calibration;
 /// The controller of the LEDs.

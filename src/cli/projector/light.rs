@@ -16,6 +16,7 @@ use crate::cli::settings::light::Light;
 use crate::cli::{Failure, answer, answer_json, printable};
 use crate::hw::i2c::BusAddress;
 use crate::hw::i2c::pace::{Wall, Within};
+use crate::hw::light::adaptation::rods_lose_mag;
 use crate::hw::light::calibration::{CalibrationError, Filter};
 use crate::hw::light::guard::{self, Guard};
 use crate::hw::light::lamp::{ENDING, POWER_UP};
@@ -382,6 +383,7 @@ fn tell(plan: &Plan, held: Option<[u16; 3]>, json: bool) -> Result<(), Failure> 
             "black_cd_m2": plan.black_cd_m2,
             "contrast": plan.contrast,
             "contrast_from": plan.source,
+            "rods_lose_mag": rods_lose_mag(plan.predicted_cd_m2, plan.drive.leds),
         }));
     }
     let [red, green, blue] = plan.drive.codes;
@@ -402,6 +404,10 @@ fn tell(plan: &Plan, held: Option<[u16; 3]>, json: bool) -> Result<(), Failure> 
     answer(&format!(
         "black      {:.2e} cd/m2 at the eyepiece, contrast {:.0}:1 ({source})",
         plan.black_cd_m2, plan.contrast
+    ))?;
+    answer(&format!(
+        "eyes       a field of full white costs the rods {:.1} mag while it is on",
+        rods_lose_mag(plan.predicted_cd_m2, plan.drive.leds)
     ))?;
     plan.advice().map_or(Ok(()), |advice| answer(&format!("filter     {advice}")))
 }

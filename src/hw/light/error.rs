@@ -66,7 +66,9 @@ pub enum LightError {
         id: u8,
     },
     /// It answers but does not become ready.
-    #[error("the {chip} answers but does not become ready: give it more time after power-up, or switch it off and on")]
+    #[error(
+        "the {chip} answers but does not become ready: give it more time after power-up, switch it off and on, or name the right --module if it is another chip"
+    )]
     NotReady {
         /// The chip.
         chip: &'static str,
