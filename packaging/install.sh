@@ -184,7 +184,7 @@ if [ -z "$mount" ]; then
     echo "     then run this again with --mount VID:PID:SERIAL (and --handbox ... for the hand controller), or edit $rules"
 fi
 todo "edit $settings: your site, the projector (every setting: $docs/settings.example.toml)"
-todo "teach it the hand controller: scotopic handbox learn --port /dev/scotopic-handbox"
+todo "teach it the hand controller: sudo scotopic handbox learn --port /dev/scotopic-handbox --map /etc/scotopic/handbox.toml"
 todo "try it in the foreground: scotopic observe --config $settings"
 todo "sudo systemctl start scotopic; journalctl -fu scotopic"
 echo "If your mount's firmware is patched so that '?' synchronises, bind another key: docs/hardware/hand-controller.md."

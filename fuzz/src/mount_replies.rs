@@ -18,6 +18,9 @@ use scotopic::units::Angle;
 use super::assert_harmless;
 use super::script::Script;
 
+/// A conversation ends after this time, so that many can be had.
+const ENOUGH: Duration = Duration::from_secs(15);
+
 /// Checks one input: the first byte says whether it is a reply or a conversation.
 ///
 /// # Panics
@@ -114,7 +117,7 @@ impl Conversation {
     }
 
     fn play(mut self, mut script: Script<'_>) {
-        for _turn in 0..32 {
+        while self.now < ENOUGH {
             let Some(what) = script.byte() else { break };
             let (what, how) = (what & 7, usize::from(what >> 3));
             match what {
