@@ -19,7 +19,7 @@ use crate::hw::mount::link::{self, Opener, Pump};
 use crate::hw::mount::sim::Simulator;
 use crate::hw::mount::sim::port::SimulatedMount;
 use crate::hw::mount::sim::settings::Settings as Simulated;
-use crate::hw::port::Port;
+use crate::hw::port::{Port, PortError};
 use crate::hw::projector;
 use crate::overlay::style::Eye;
 use crate::sky::field::Nudge;
@@ -63,7 +63,9 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let clock = if arguments.fast { Clock::made(begin) } else { Clock::real(begin) };
     let ours = Ours { utc_at_start: clock.utc_at_start(), site };
     let instrument = overlay::instrument(settings.instrument.as_deref(), None)?;
-    let mut opener = opener(&mount, site, ours.utc_at_start)?;
+    // Nobody sits before a service, which may be started before the adapter is plugged in and the bridge has power.
+    let patient = arguments.headless && arguments.seconds.is_none();
+    let mut opener = opener(&mount, site, ours.utc_at_start, patient)?;
     if let Some(path) = &arguments.record {
         opener = record::recorded(opener, path, &mount.to_string())?;
     }
@@ -111,13 +113,17 @@ fn begin(arguments: &Arguments, simulated: bool, site: Option<Site>) -> Option<U
 }
 
 /// Opens the line. The first opening happens here, so that a wrong name is told before the screen is taken; from then on a
-/// lost line is opened again for ever.
-fn opener(mount: &MountAddress, site: Option<Site>, start: Utc) -> Result<Opener, Failure> {
+/// lost line is opened again for ever. The patient wait for one that is not there yet.
+fn opener(mount: &MountAddress, site: Option<Site>, start: Utc, patient: bool) -> Result<Opener, Failure> {
     let Some(mut again) = link::opener(mount) else {
         let settings = Simulated::at(site.unwrap_or(Simulated::default().site), start);
         let mount = SimulatedMount::new(Simulator::new(settings));
         return Ok(Box::new(move || Ok(Box::new(mount.open()?) as Box<dyn Port>)));
     };
-    let mut first = Some(again().map_err(Failure::failed)?);
+    let mut first = match again() {
+        Ok(port) => Some(port),
+        Err(PortError::NotThere { .. } | PortError::NoConnection { .. }) if patient => None,
+        Err(error) => return Err(Failure::failed(error)),
+    };
     Ok(Box::new(move || first.take().map_or_else(&mut again, Ok)))
 }
