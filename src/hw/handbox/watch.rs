@@ -11,6 +11,8 @@ pub const KEY: &str = "?";
 pub const PERIOD: Duration = Duration::from_millis(333);
 /// A second line with more characters than this scrolls: help, or facts of an object.
 const SCROLLS: usize = 32;
+/// Facts of an object are shorter than this.
+const LONGEST_FACTS: usize = 200;
 
 /// Watches what the display shows.
 #[derive(Debug, Clone, Default)]
@@ -40,9 +42,11 @@ impl Watch {
     }
 }
 
-/// Whether two lines are help: the first one says so, and the second one scrolls.
+/// Whether two lines are help: the first one says so and the second one scrolls, or there is far more text than facts have
+/// (stroblhof-oberrohrbach.de: help may be 1000 characters).
 fn is_help(top: &str, bottom: &str) -> bool {
-    top.trim().to_lowercase().starts_with("help") && bottom.chars().count() > SCROLLS
+    let length = bottom.trim_end().chars().count();
+    length > LONGEST_FACTS || (length > SCROLLS && top.trim().to_lowercase().starts_with("help"))
 }
 
 #[cfg(test)]
@@ -68,5 +72,10 @@ mod tests {
         let facts = "GLOBULAR CLUSTER MAG 5.9 SIZE 16.6' HERCULES, 25100 LIGHT YEARS";
         assert_eq!(watch.shown("Select Item:", " Object", Duration::ZERO), None);
         assert_eq!(watch.shown("Messier 13", facts, Duration::ZERO), None);
+        let help = "Press ENTER to choose. ".repeat(12);
+        assert!(
+            watch.shown("Messier Object:", &help, Duration::ZERO).is_some(),
+            "so much text is help, whatever it is called"
+        );
     }
 }
