@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{LocalModes, tcgetattr};
 use scotopic::hw::handbox::tap::{Tap, TapSaid};
 use scotopic::hw::handbox::{Decoder, Heard, KeyMap};
 use scotopic::hw::port::PortError;
@@ -216,16 +217,11 @@ fn the_listener_never_sends_and_passes_every_byte() {
     let listener =
         Running::start(scotopic(&folder, &["handbox", "listen", "--json", "--port", &port, "--map", "lx200-classic"]));
     rustix::fs::fcntl_setfl(&far, rustix::fs::OFlags::NONBLOCK).unwrap();
+    // A new terminal echoes what it hears; the listener turns that off.
     let deadline = Instant::now() + PATIENCE;
-    // Pressed until it is heard: the listener may not have opened the line yet.
-    loop {
-        far.write_all(b"\xFF\xFF\xFF\xFF\xFF\x2A\x4E").unwrap();
-        thread::sleep(Duration::from_millis(100));
-        far.write_all(b"\xCE").unwrap();
-        if listener.lines.recv_timeout(Duration::from_millis(500)).is_ok_and(|line| line.contains("\"key\":\"N\"")) {
-            break;
-        }
-        assert!(Instant::now() < deadline);
+    while tcgetattr(&far).unwrap().local_modes.contains(LocalModes::ECHO) {
+        assert!(Instant::now() < deadline, "the listener did not open the line");
+        thread::sleep(Duration::from_millis(10));
     }
     // All bytes of the start-up sequence came through the system's marks: none is unknown.
     far.write_all(b"\xFF\xFF\xFF\xFF\xFF\x2A\x0D").unwrap();
