@@ -52,6 +52,7 @@ const ADAPTERS: &[&str] = &[
     "src/hw/trace.rs",
     "src/hw/supervisor.rs",
     "src/hw/mount/link.rs",
+    "src/hw/projector.rs",
     "src/hw/projector/folder.rs",
     "src/hw/projector/framebuffer.rs",
     "src/hw/projector/ioctl.rs",

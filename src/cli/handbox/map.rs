@@ -35,7 +35,7 @@ pub fn load(wanted: Option<&str>) -> Result<KeyMap, Failure> {
         Some(map) => Ok(map),
         None if Path::new(wanted).exists() => read(Path::new(wanted)),
         None => Err(Failure::Asked(format!(
-            "'{}' is neither a built-in key map ({}) nor a file: teach one with `scotopic handbox learn`",
+            "the key map {} is neither built in ({}) nor a file: teach one with `scotopic handbox learn`",
             printable(wanted),
             SHIPPED.iter().map(|shipped| shipped.name).collect::<Vec<_>>().join(", ")
         ))),

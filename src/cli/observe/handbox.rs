@@ -1,6 +1,5 @@
 //! The hand controller of a session: its source is opened beside the mount, in a thread of its own that wakes the loop.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -9,6 +8,7 @@ use std::time::{Duration, Instant};
 use crate::app::bindings::Bindings;
 use crate::app::commands::Action;
 use crate::cli::Failure;
+use crate::cli::handbox::map;
 use crate::cli::settings::handbox::Handbox as Settings;
 use crate::hw::handbox::presenter::{self, Buttons};
 use crate::hw::handbox::source::Source;
@@ -16,7 +16,7 @@ use crate::hw::handbox::tap::{self, Tap, TapSaid};
 use crate::hw::handbox::{Decoder, Heard, KeyMap, Pressed, watch};
 use crate::hw::mount::address::MountAddress;
 
-/// The key map when none is named: that of the mount this program is made for.
+/// The key map whose bindings count while there is no hand controller: that of the mount this program is made for.
 const USUAL: &str = "autostar2-guess";
 /// Of a presenter or gamepad.
 const PRESENTER: &str = "presenter";
@@ -24,8 +24,6 @@ const PRESENTER: &str = "presenter";
 const PATIENCE: Duration = Duration::from_secs(3);
 /// A line that is lost again and again is told of so often at most.
 const TELL_AGAIN: Duration = Duration::from_secs(60);
-/// Largest file of a key map.
-const LARGEST_BYTES: u64 = 1 << 20;
 
 /// The hand controller, ready to be listened to.
 pub(super) struct Handbox {
@@ -85,7 +83,7 @@ pub(super) fn prepare(
     match source {
         Source::Tap { path } => {
             tap::refuse_mounts_port(path, mount).map_err(Failure::asked)?;
-            let map = key_map(name.unwrap_or(USUAL))?;
+            let map = map::load(name)?;
             let bindings = settings.bindings(map.name()).map_err(Failure::asked)?;
             known(&bindings, settings, &map)?;
             let notices = notices(&bindings, &map);
@@ -157,26 +155,6 @@ fn known(bindings: &Bindings, settings: &Settings, map: &KeyMap) -> Result<(), F
             )))
         }
     }
-}
-
-/// A built-in key map, or one of a file.
-fn key_map(name: &str) -> Result<KeyMap, Failure> {
-    if let Some(map) = KeyMap::shipped(name) {
-        return Ok(map);
-    }
-    let path = Path::new(name);
-    let unusable = |why: &dyn std::fmt::Display| {
-        Failure::Asked(format!(
-            "the key map {name} cannot be used: {why}; give lx200-classic, autostar2-guess, ascii, or a file that \
-             `scotopic handbox learn` wrote"
-        ))
-    };
-    let size = std::fs::metadata(path).map_err(|error| unusable(&error))?.len();
-    if size > LARGEST_BYTES {
-        return Err(unusable(&format!("it has {size} bytes")));
-    }
-    let text = std::fs::read_to_string(path).map_err(|error| unusable(&error))?;
-    KeyMap::from_toml(&text).map_err(|error| unusable(&error))
 }
 
 impl Handbox {
