@@ -53,7 +53,7 @@ pub struct Arguments {
     /// The mount: sim, `serial:PATH[@BAUD]` or tcp:HOST:PORT [default: the settings', else sim]
     #[arg(long, value_name = "MOUNT")]
     pub mount: Option<MountAddress>,
-    /// Where the picture goes: window, fb:/dev/fbN, png:DIR or none [default: the settings', else none]
+    /// Where the picture goes: kms:CONNECTOR, window:MONITOR, fb:/dev/fbN, png:DIR or none [default: the settings', else none]
     #[arg(long, value_name = "PROJECTOR")]
     pub projector: Option<ProjectorAddress>,
     /// Settings file [default: scotopic/settings.toml in the user's configuration folder]
