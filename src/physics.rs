@@ -1,9 +1,11 @@
-//! What nature does: air, what its molecules and particles do to light, and the bending of light by it.
+//! What nature does: air, what its molecules and particles do to light, the bending of light by it, and the low Sun behind it.
 
 /// Particles in the air: size distributions, Mie's series, the climates of OPAC.
 pub mod aerosol;
 /// The air: its refractive index, and what it is like at each height.
 pub mod air;
+/// From spectra to colours.
+pub mod colour;
 /// Absorption by ozone.
 pub mod ozone;
 /// Scattering by the molecules of the air.
@@ -12,3 +14,5 @@ pub mod rayleigh;
 pub mod refraction;
 /// The light of the sky around a low Sun.
 pub mod skylight;
+/// The low Sun: its light, its limb, and its picture through the air.
+pub mod sun;

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+/// Sequences of pictures as animated PNG files in memory.
+pub mod apng;
 /// From linear light to a display's few codes.
 pub mod dither;
 /// A picture between its pixels, half as large, mirrored, turned.
 mod fit;
-/// A small bounded reader of FITS images.
+/// A small bounded reader of FITS images, and a writer.
 pub mod fits;
 /// Pictures as PNG files in memory.
 pub mod png;

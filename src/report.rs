@@ -6,6 +6,10 @@ use std::time::Duration;
 
 /// What particles take from light.
 pub mod aerosol;
+/// The colour of the low Sun.
+pub mod colour;
+/// The picture of the disc.
+pub mod disc;
 /// A study as a plot.
 pub mod plot;
 /// The refraction of single rays by every method.

@@ -9,13 +9,14 @@ use serde_json::json;
 use super::{Failure, answer, answer_json};
 use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
-use crate::report::{Measurement, Study, aerosol, measure, plot, skylight, stability, table};
+use crate::report::{Measurement, Study, aerosol, colour, disc, measure, plot, skylight, stability, table};
 
 /// Which report.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = "Examples:\n  \
     scotopic report refraction                   the table\n  \
     scotopic report refraction --out report      and report/refraction.svg, report/refraction.json\n  \
+    scotopic report colour                       the error of few wavelengths, and the times of the picture\n  \
     scotopic report stability                    what held, under extreme air and rays")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -30,7 +31,15 @@ enum Report {
     Aerosol(Output),
     /// Error against run time of the light of the sky, with photons followed one by one as the reference
     Sky(Output),
-    /// Extreme air and extreme rays: what held
+    /// Error of colour against the number of wavelengths, and the times of the picture of the disc
+    Colour {
+        #[command(flatten)]
+        output: Output,
+        /// Trace the measured picture pixel by pixel in all its columns, not in four (takes many minutes)
+        #[arg(long)]
+        all_columns: bool,
+    },
+    /// Extreme air, rays and scenes: what held
     Stability {
         /// Answer as JSON
         #[arg(long)]
@@ -58,6 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Report::Refraction(output) => refraction(output),
         Report::Aerosol(output) => particles(output),
         Report::Sky(output) => sky(output),
+        Report::Colour { output, all_columns } => colours(output, *all_columns),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -123,6 +133,29 @@ fn sky(output: &Output) -> Result<(), Failure> {
     ))
 }
 
+fn colours(output: &Output, all_columns: bool) -> Result<(), Failure> {
+    let study = colour::study().map_err(Failure::failed)?;
+    let measurements = timed(&study);
+    let begin = Instant::now();
+    let clock = || begin.elapsed();
+    let costs = colour::costs(&clock).map_err(Failure::failed)?;
+    let mut bar = super::sun::progress::Bar::new("the omega sunset, pixel by pixel");
+    let disc_cost = disc::cost(&clock, all_columns, &mut |share| bar.show(share)).map_err(Failure::failed)?;
+    bar.end();
+    if let Some(folder) = &output.out {
+        write(folder, "colour", &study, &measurements)?;
+    }
+    if output.json {
+        return answer_json(&json!({ "disc": disc_cost, "pictures": costs, "measurements": measurements }));
+    }
+    answer(&format!(
+        "{}\n{}\n{}",
+        disc::lines(&disc_cost),
+        colour::table(&costs),
+        table(&study, &measurements).trim_end()
+    ))
+}
+
 fn timed(study: &Study<'_>) -> Vec<Measurement> {
     let begin = Instant::now();
     measure(study, &|| begin.elapsed())
@@ -145,6 +178,7 @@ fn extremes(json: bool) -> Result<(), Failure> {
     let mut extremes = stability::run();
     extremes.extend(aerosol::extremes());
     extremes.extend(skylight::extremes());
+    extremes.extend(disc::extremes());
     if json {
         answer_json(&extremes)?;
     } else {

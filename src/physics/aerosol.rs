@@ -6,6 +6,8 @@ pub mod climate;
 pub mod components;
 /// One homogeneous sphere.
 pub mod mie;
+/// How particles lie over a place, whatever the wavelength.
+pub mod shape;
 /// Many spheres of one substance.
 pub mod sizes;
 /// Numbers as printed.

@@ -2,6 +2,9 @@
 //!
 //! Own code, because a photograph comes from anywhere and everything in it must be bounded before memory is asked for.
 
+/// Writing images of three planes.
+pub mod write;
+
 use std::collections::HashMap;
 
 /// Longest side that is read.

@@ -32,12 +32,20 @@ pub fn encode_dithered(picture: &Picture) -> Result<Vec<u8>, PngError> {
     of_bytes(picture.width(), picture.height(), dither::rgb8(picture))
 }
 
+/// The bytes of a PNG file of ready codes, row by row from the top.
+///
+/// # Errors
+/// No pixels, more or fewer than the sides say, or larger than PNG can be.
+pub fn encode_codes(width: usize, height: usize, codes: &[[u8; 3]]) -> Result<Vec<u8>, PngError> {
+    of_bytes(width, height, codes.as_flattened().to_vec())
+}
+
 fn of_bytes(width: usize, height: usize, bytes: Vec<u8>) -> Result<Vec<u8>, PngError> {
     let refused = |why: String| PngError { width, height, why };
     let sides = u32::try_from(width).ok().zip(u32::try_from(height).ok());
     let image = sides
         .and_then(|(width, height)| RgbImage::from_raw(width, height, bytes))
-        .ok_or_else(|| refused("a side is too long".into()))?;
+        .ok_or_else(|| refused("a side is too long, or pixels are missing".into()))?;
     let mut file = Cursor::new(Vec::new());
     image.write_to(&mut file, ImageFormat::Png).map_err(|error| refused(error.to_string()))?;
     Ok(file.into_inner())

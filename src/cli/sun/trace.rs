@@ -6,10 +6,10 @@ use serde_json::json;
 
 use super::atmosphere;
 use crate::cli::{Failure, answer, answer_json};
-use crate::physics::aerosol::climate::Climate;
+use crate::physics::aerosol::climate::{Climate, Column};
 use crate::physics::aerosol::components::Humidity;
 use crate::physics::ozone::OzoneLayer;
-use crate::physics::refraction::ray::{self, Launch, Medium, Ray};
+use crate::physics::refraction::ray::{self, Crossing, Launch, Medium, Ray};
 use crate::units::Angle;
 
 /// To this fraction particles are computed: the tables they rest on have three digits.
@@ -34,7 +34,7 @@ pub struct Arguments {
     /// Height of the eye above the ground, metres [default: the preset's, else 2]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     observer_height_m: Option<f64>,
-    /// us76, standard, omega, mock-mirage, weak-mock-mirage, bruton, desert, green-flash, red-flash, or a file
+    /// us76, standard, omega, mock-mirage, weak-mock-mirage, bruton, desert, green-flash, red-flash, weak-inversion, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = "us76")]
     atmosphere: String,
     /// Radius of the Earth, metres
@@ -49,6 +49,9 @@ pub struct Arguments {
     /// Relative humidity in which the climate's particles grow, percent (0 to 99)
     #[arg(long, value_name = "PERCENT", default_value_t = 80.0, requires = "climate", allow_negative_numbers = true)]
     humidity: f64,
+    /// The thesis' law: what particles scatter forward counts as sunlight, so that the aerosol depth is (1 - g) times as much
+    #[arg(long, requires = "climate")]
+    less_forward: bool,
     /// Ozone over the observer, Dobson units (the Earth has about 300)
     #[arg(long, value_name = "DU", default_value_t = 0.0, allow_negative_numbers = true)]
     ozone_du: f64,
@@ -82,8 +85,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Some(climate.column(humidity, nm, PARTICLES_TOLERANCE).map_err(Failure::asked)?)
         }
     };
-    if let Some(particles) = &particles {
-        medium = medium.with_aerosol(particles);
+    let less_forward = particles.map(Column::less_forward);
+    let (shown, beside) = if arguments.less_forward { (less_forward, particles) } else { (particles, less_forward) };
+    if let Some(shown) = &shown {
+        medium = medium.with_aerosol(shown);
     }
     let ozone = match arguments.ozone_du {
         0.0 => None,
@@ -106,10 +111,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .ok_or_else(|| Failure::asked(format!("no method is called {}", arguments.method)))?;
     let tracer = method.prepare(&medium, Angle::arcseconds(arguments.tolerance_arcsec)).map_err(Failure::asked)?;
     let ray = tracer.trace(&launch).map_err(Failure::asked)?;
-    if arguments.json { answer_json(&as_json(&ray)) } else { answer(&in_words(&ray)) }
+    // The other law is shown beside the one asked for: the parts of each layer's depth are those of its extinction.
+    let other = match (&shown, &beside) {
+        (Some(shown), Some(beside)) => ray.crossings.iter().map(|crossing| under(crossing, shown, beside)).sum(),
+        _ => 0.0,
+    };
+    let (plain, less) = if arguments.less_forward { (other, ray.depths.aerosol) } else { (ray.depths.aerosol, other) };
+    if arguments.json {
+        answer_json(&as_json(&ray, plain, less))
+    } else {
+        answer(&in_words(&ray, plain, less, arguments.less_forward))
+    }
 }
 
-fn as_json(ray: &Ray) -> serde_json::Value {
+/// The depth of a passage under another law, whose extinction is the same multiple everywhere in a layer.
+fn under(crossing: &Crossing, shown: &Column, beside: &Column) -> f64 {
+    let km = 0.5e-3 * (crossing.low_m + crossing.high_m);
+    let (shown, beside) = (shown.at(km).extinction_per_km, beside.at(km).extinction_per_km);
+    if shown > 0.0 { crossing.depths.aerosol * beside / shown } else { 0.0 }
+}
+
+fn as_json(ray: &Ray, plain: f64, less_forward: f64) -> serde_json::Value {
     json!({
         "outcome": ray.outcome.word(),
         "refraction_arcsec": ray.refraction.to_arcseconds(),
@@ -118,13 +140,17 @@ fn as_json(ray: &Ray) -> serde_json::Value {
         "tangent_height_m": ray.tangent_height_m,
         "rayleigh_optical_depth": ray.depths.rayleigh,
         "aerosol_optical_depth": ray.depths.aerosol,
+        "aerosol_optical_depth_plain": plain,
+        "aerosol_optical_depth_less_forward": less_forward,
         "ozone_optical_depth": ray.depths.ozone,
         "steps": ray.steps,
         "believed_error_arcsec": ray.believed_error.to_arcseconds(),
     })
 }
 
-fn in_words(ray: &Ray) -> String {
+fn in_words(ray: &Ray, plain: f64, less_forward: f64, asked: bool) -> String {
+    let (law, other) = if asked { ("less forward", plain) } else { ("plain", less_forward) };
+    let beside = if asked { "plain" } else { "less what is scattered forward" };
     let tangent = ray.tangent_height_m.map_or_else(|| "none".to_owned(), |height| format!("{height:.4} m"));
     format!(
         "outcome               {}\n\
@@ -133,7 +159,7 @@ fn in_words(ray: &Ray) -> String {
          path length           {:.1} m\n\
          tangent height        {tangent}\n\
          Rayleigh depth        {:.5}\n\
-         aerosol depth         {:.5}\n\
+         aerosol depth         {:.5} ({law}; {beside}: {other:.5})\n\
          ozone depth           {:.5}",
         ray.outcome.word(),
         ray.refraction.to_arcseconds(),

@@ -39,13 +39,13 @@ pub type Constituent = (Component, f64);
 const FREE_TROPOSPHERE: &[Constituent] =
     &[(Component::Waso, 438.0), (Component::Inso, 0.0013), (Component::Soot, 294.0)];
 /// Scale height of the free troposphere's particles, kilometres.
-const FREE_SCALE_KM: f64 = 8.0;
+pub(super) const FREE_SCALE_KM: f64 = 8.0;
 /// Where the free troposphere ends, kilometres.
-const TROPOPAUSE_KM: f64 = 12.0;
+pub(super) const TROPOPAUSE_KM: f64 = 12.0;
 /// Stratosphere up to [`TOP_KM`]: number per cubic centimetre, the same everywhere.
 const STRATOSPHERE: &[Constituent] = &[(Component::Suso, 3.0)];
 /// Above this height, kilometres, the air has no particles.
-const TOP_KM: f64 = 35.0;
+pub(super) const TOP_KM: f64 = 35.0;
 
 /// A climate that is not there.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -127,7 +127,7 @@ pub struct MixedLayer {
 
 impl MixedLayer {
     /// Number of particles at a height, relative to the ground.
-    fn thinning(&self, height_km: f64) -> f64 {
+    pub(super) fn thinning(&self, height_km: f64) -> f64 {
         self.scale_height_km.map_or(1.0, |scale| (-height_km / scale).exp())
     }
 
@@ -291,6 +291,26 @@ impl Column {
         } else {
             Bulk::default()
         }
+    }
+
+    /// The column for the thesis' law (its eq. 4.3'), by which all that is scattered forward counts as not scattered:
+    /// everything that particles take is (1 - g) times as much.
+    #[must_use]
+    pub fn less_forward(self) -> Column {
+        let less = |bulk: Bulk| bulk.times(1.0 - bulk.asymmetry);
+        Column {
+            ground: less(self.ground),
+            free_troposphere: less(self.free_troposphere),
+            stratosphere: less(self.stratosphere),
+            ..self
+        }
+    }
+
+    /// Extinction of the mixed layer and the free troposphere, each referred to the ground, and of the stratosphere, per
+    /// metre: the parts of [`super::shape::Shape`].
+    #[must_use]
+    pub fn parts_per_m(&self) -> [f64; 3] {
+        [self.ground, self.free_troposphere, self.stratosphere].map(|bulk| 1e-3 * bulk.extinction_per_km)
     }
 
     /// Optical depth of the whole column, straight up.

@@ -6,8 +6,18 @@ use super::surface_layer::SurfaceLayer;
 use super::us76;
 
 /// The names that can be asked for.
-pub const NAMES: [&str; 9] =
-    ["us76", "standard", "omega", "mock-mirage", "weak-mock-mirage", "bruton", "desert", "green-flash", "red-flash"];
+pub const NAMES: [&str; 10] = [
+    "us76",
+    "standard",
+    "omega",
+    "mock-mirage",
+    "weak-mock-mirage",
+    "bruton",
+    "desert",
+    "green-flash",
+    "red-flash",
+    "weak-inversion",
+];
 
 /// The atmosphere of a name; `None` for a name that is not in [`NAMES`].
 ///
@@ -26,6 +36,7 @@ pub fn named(name: &str) -> Option<Result<Described, ReadError>> {
         "weak-mock-mirage" => from_toml(include_str!("presets/weak-mock-mirage.toml")),
         "bruton" => from_toml(include_str!("presets/bruton.toml")),
         "red-flash" => from_toml(include_str!("presets/red-flash.toml")),
+        "weak-inversion" => from_toml(include_str!("presets/weak-inversion.toml")),
         "green-flash" => over_warm_ground(
             "Green flash over a warm sea",
             "Obukhov length after A. T. Young, aty.sdsu.edu/explain/simulations/how.html; the other parameters are ours",

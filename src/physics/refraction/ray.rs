@@ -2,6 +2,8 @@
 
 use crate::units::Angle;
 
+/// The directions at which the path of a ray changes its kind.
+mod critical;
 /// Exact quadrature in the invariant.
 pub mod exact;
 /// Lehn's parabolas.
