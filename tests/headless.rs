@@ -115,16 +115,19 @@ impl Session {
 
     /// `?`, and the picture after it.
     fn tap(&mut self, what: &str) -> RgbImage {
-        let before = self.latest();
-        self.cable.press(HELP, Duration::from_millis(80));
-        self.wait(what, |picture| Some(picture) != before.as_ref())
+        self.pressed(what, Duration::from_millis(80))
     }
 
     /// `?` held.
     fn hold(&mut self, what: &str) -> RgbImage {
-        let before = self.latest();
-        self.cable.press(HELP, Duration::from_millis(1600));
-        self.wait(what, |picture| Some(picture) != before.as_ref())
+        self.pressed(what, Duration::from_millis(1600))
+    }
+
+    /// Waits for a menu that says something else than before; the sky beside it drifts by itself.
+    fn pressed(&mut self, what: &str, held: Duration) -> RgbImage {
+        let before = self.latest().map(|picture| inside(&picture));
+        self.cable.press(HELP, held);
+        self.wait(what, |picture| card(picture).is_some() && Some(inside(picture)) != before)
     }
 
     fn end(&mut self) -> serde_json::Value {
@@ -176,6 +179,11 @@ fn card(picture: &RgbImage) -> Option<(u32, u32, u32)> {
         }
     }
     found.filter(|_| best > 90)
+}
+
+/// What stands where every menu of an eyepiece of 24 mm has its lines.
+fn inside(picture: &RgbImage) -> Vec<u8> {
+    (285..485).flat_map(|y| (850..1010).flat_map(move |x| picture.get_pixel(x, y).0)).collect()
 }
 
 /// Everything on the card is red or black: nothing of the sky is read through it.
@@ -271,10 +279,12 @@ impl Manager {
         Some(String::from_utf8_lossy(&said[..count]).into_owned())
     }
 
-    fn wait_for(&self, words: &str) {
-        let deadline = Instant::now() + PATIENCE;
-        while !self.hear(PATIENCE).is_some_and(|said| said.contains(words)) {
-            assert!(Instant::now() < deadline, "{words} was not said");
+    /// Hears until all words have been said, in whatever order.
+    fn wait_for(&self, words: &[&str]) {
+        let (deadline, mut heard) = (Instant::now() + PATIENCE, String::new());
+        while !words.iter().all(|words| heard.contains(words)) {
+            assert!(Instant::now() < deadline, "of {words:?} only this was said:\n{heard}");
+            heard.extend(self.hear(Duration::from_secs(1)));
         }
     }
 }
@@ -289,13 +299,12 @@ fn the_service_manager_hears_that_it_is_ready_that_it_lives_and_that_it_ends() {
         .env("WATCHDOG_USEC", "600000")
         .spawn()
         .unwrap();
-    manager.wait_for("READY=1");
-    for _ in 0..4 {
-        manager.wait_for("WATCHDOG=1");
+    manager.wait_for(&["READY=1", "WATCHDOG=1", "STATUS=linked to LX2001"]);
+    for _ in 0..3 {
+        manager.wait_for(&["WATCHDOG=1"]);
     }
-    manager.wait_for("STATUS=linked to LX2001");
     kill_process(Pid::from_child(&child), Signal::TERM).unwrap();
-    manager.wait_for("STOPPING=1");
+    manager.wait_for(&["STOPPING=1"]);
     assert!(ended(child).status.success());
     fs::remove_dir_all(home).unwrap();
 }
@@ -320,7 +329,7 @@ fn a_projector_that_hangs_lets_the_watchdog_starve() {
         .env("WATCHDOG_USEC", "1000000")
         .spawn()
         .unwrap();
-    manager.wait_for("WATCHDOG=1");
+    manager.wait_for(&["WATCHDOG=1"]);
     let deadline = Instant::now() + PATIENCE;
     let mut fed_at = Instant::now();
     while fed_at.elapsed() < Duration::from_secs(4) {

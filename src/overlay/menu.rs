@@ -268,3 +268,84 @@ fn triangle(x: f64, y: f64, height: f64) -> Option<Path> {
     path.close();
     path.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::compose::{Composer, Scene};
+    use super::super::style::{Eye, Mode};
+    use super::*;
+    use crate::sky::catalogue::{Catalogue, Found};
+    use crate::sky::coords::Equatorial;
+    use crate::sky::field::FieldOfView;
+    use crate::sky::optics::Instrument;
+    use crate::units::Angle;
+
+    fn menu(lines: usize, bar: usize) -> Menu {
+        let line = |n: usize| Entry { label: format!("line {n}"), value: format!("{n}×"), chosen: n == bar };
+        Menu {
+            title: "eyepiece".into(),
+            lines: (0..lines).map(line).collect(),
+            bar: Some(bar),
+            hint: "hold ?: choose".into(),
+        }
+    }
+
+    fn drawn(menu: Option<&Menu>, eyepiece_mm: f64, mode: Mode) -> (Picture, FieldOfView) {
+        let centre = Equatorial::new(Angle::degrees(283.4), Angle::degrees(33.0));
+        let instrument = Instrument::default().with_eyepiece(eyepiece_mm);
+        let field = FieldOfView::towards(&centre, Angle::ZERO, &instrument);
+        let scene = Scene {
+            found: &Found::default(),
+            target: None,
+            photographs: &[],
+            catalogue: Catalogue::embedded(),
+            animation: None,
+            menu,
+        };
+        let style = Style { mode, ..Style::default() };
+        (Composer::default().compose(&scene, &field, &Eye::default(), &style), field)
+    }
+
+    #[test]
+    fn with_every_eyepiece_the_menu_is_red_and_inside_the_circle_on_the_right_side() {
+        for mm in [32.0, 24.0, 15.0, 10.0, 5.0] {
+            for lines in [1, 5, 10, 20] {
+                let (with, field) = drawn(Some(&menu(lines, lines / 2)), mm, Mode::Over);
+                let (without, _) = drawn(None, mm, Mode::Over);
+                let radius = field.circle_px();
+                let mut changed = 0;
+                for (index, (on, off)) in with.pixels().iter().zip(without.pixels()).enumerate() {
+                    let (x, y) = ((index % 1024) as f64 + 0.5 - 512.0, (index / 1024) as f64 + 0.5 - 384.0);
+                    assert!(on[1] == 0.0 && on[2] == 0.0, "{mm} mm: text and marks are red");
+                    if on != off {
+                        changed += 1;
+                        assert!(x.hypot(y) <= radius, "{mm} mm, {lines} lines: {x} {y} is beyond the circle");
+                        assert!(x > 0.0 || mm < 6.0, "{mm} mm, {lines} lines: {x} {y} is on the left");
+                    }
+                }
+                assert!(changed > 1000, "{mm} mm, {lines} lines: only {changed} pixels");
+            }
+        }
+    }
+
+    #[test]
+    fn a_list_that_is_too_long_shows_the_lines_about_the_bar() {
+        let mut scribe = Scribe::default();
+        let region = Region::new(1024, 768, Vec::new());
+        for bar in [0, 7, 39] {
+            let placed = Placed::find(&menu(40, bar), &mut scribe, 20.0, (1024, 768), &region).unwrap();
+            assert!(placed.rows.len() < 40 && placed.rows.iter().filter(|row| row.under_bar).count() == 1);
+            assert_eq!(placed.more, (bar > placed.rows.len() / 2, bar < 39));
+        }
+    }
+
+    #[test]
+    fn switched_off_the_menu_alone_is_drawn_with_the_line_of_the_eyepiece() {
+        let (picture, _) = drawn(Some(&menu(5, 1)), 24.0, Mode::Off);
+        let lit = |rows: std::ops::Range<usize>| rows.flat_map(|y| picture.row(y).to_vec()).any(|pixel| pixel[0] > 0.2);
+        assert!(lit(300..460) && lit(700..768), "the list and the line at the bottom");
+        assert!(!lit(0..200), "no words about the sky");
+        let (dark, _) = drawn(None, 24.0, Mode::Off);
+        assert!(dark.is_black());
+    }
+}
