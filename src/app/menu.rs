@@ -15,6 +15,8 @@ const COMMANDS_STAY: Duration = Duration::from_secs(10);
 const TEXT_STAYS: Duration = Duration::from_secs(15);
 /// Longest line of text, in characters.
 const WIDEST: usize = 30;
+/// So many keys are shown at once.
+pub const KEYS_A_PAGE: usize = 8;
 /// Most lines of text.
 const MOST_LINES: usize = 14;
 
@@ -86,7 +88,7 @@ impl Menu {
                 bar: Some(self.bar),
                 hint: hint(model, &[Action::Menu, Action::MenuChoose], "choose"),
             },
-            Page::Help => help(model),
+            Page::Help => help(model, self.bar),
             Page::Says(text) => Drawn { title: "note".into(), lines: wrapped(text), ..Drawn::default() },
         }
     }
@@ -141,13 +143,14 @@ fn hint(model: &Model, actions: &[Action], does: &str) -> String {
     press.map_or_else(String::new, |press| format!("{press}: {does}"))
 }
 
-fn help(model: &Model) -> Drawn {
+/// A page of the hand controller's keys, from the given one on.
+fn help(model: &Model, first: usize) -> Drawn {
     let keys = model.opening.bindings.all().map(|(press, name)| Entry {
         label: press.words(),
         value: name.to_owned(),
         chosen: false,
     });
-    let mut lines: Vec<Entry> = keys.take(MOST_LINES).collect();
+    let mut lines: Vec<Entry> = keys.skip(first).take(KEYS_A_PAGE).collect();
     if lines.is_empty() {
         lines = wrapped("no key of a hand controller means anything: start with --handbox PORT");
     }

@@ -4,7 +4,7 @@ use super::keys;
 use crate::app::commands::Action;
 use crate::app::effect::Effect;
 use crate::app::log::Weight;
-use crate::app::menu::{LINES, Page};
+use crate::app::menu::{KEYS_A_PAGE, LINES, Page};
 use crate::app::model::Model;
 use crate::hw::handbox::Pressed;
 
@@ -54,6 +54,9 @@ pub(super) fn in_menu(model: &mut Model, action: Action) -> Vec<Effect> {
                 Page::Eyepieces if action == Action::MenuChoose => model.menu = None,
                 Page::Eyepieces => {
                     return keys::done(model, if down { Action::NextEyepiece } else { Action::PreviousEyepiece });
+                }
+                Page::Help if down && bar + KEYS_A_PAGE < model.opening.bindings.all().count() => {
+                    menu.bar += KEYS_A_PAGE;
                 }
                 Page::Help | Page::Says(_) => model.open_menu(Page::Commands),
             }

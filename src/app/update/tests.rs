@@ -470,8 +470,11 @@ fn keys_with_commands_of_their_own_do_them_at_once() {
     let brighter = drawn(&tapped(&mut model, "6")).unwrap().brightness;
     assert!(brighter > drawn(&tapped(&mut model, "5")).unwrap().brightness);
     let effects = tapped(&mut model, "8");
-    let help = drawn(&effects).and_then(|scene| scene.menu.clone()).unwrap();
-    assert!(help.lines.iter().any(|line| line.label == "?" && line.value == "eyepiece"), "{help:?}");
+    let page = |effects: &[Effect]| drawn(effects).and_then(|scene| scene.menu.clone()).unwrap();
+    let (first, second, third) = (page(&effects), page(&tapped(&mut model, "?")), page(&tapped(&mut model, "?")));
+    assert_eq!([&first, &second, &third].map(|menu| menu.title.as_str()), ["keys", "keys", "menu"]);
+    let mut lines = first.lines.iter().chain(&second.lines);
+    assert!(lines.any(|line| line.label == "?" && line.value == "eyepiece"), "{first:?} {second:?}");
 }
 
 #[test]

@@ -35,7 +35,7 @@ impl Write for Sink {
     }
 }
 
-/// The same opener, each of whose lines is written to `path`, without the observer's site.
+/// The same opener, each of whose lines is written to `path`.
 ///
 /// # Errors
 /// The file cannot be made.
