@@ -2,11 +2,17 @@
 //!
 //! `dir` is `to-mount`, `from-mount`, `from-handbox` or `none` (a note alone); `hex` the bytes; `t_us` the time since the start.
 
+mod scrub;
+mod tolerant;
+
 use std::fmt::Write as _;
 use std::io::Write;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+
+pub use self::scrub::Scrubber;
+pub use self::tolerant::Tolerant;
 
 use super::port::{Port, PortError};
 
@@ -64,17 +70,28 @@ pub struct Recording<P> {
     port: P,
     sink: Box<dyn Write + Send>,
     now: Duration,
+    scrubber: Option<Scrubber>,
 }
 
 impl<P: Port> Recording<P> {
     /// Records from now on, beginning with a header of the caller's facts: firmware, line, program version.
     pub fn new(port: P, mut sink: Box<dyn Write + Send>, header: &serde_json::Value) -> Recording<P> {
         let _ = writeln!(sink, "{header}");
-        Recording { port, sink, now: Duration::ZERO }
+        Recording { port, sink, now: Duration::ZERO, scrubber: None }
+    }
+
+    /// The same without the observer's place, so that it can be given away.
+    pub fn scrubbed(port: P, sink: Box<dyn Write + Send>, header: &serde_json::Value) -> Recording<P> {
+        Recording { scrubber: Some(Scrubber::default()), ..Recording::new(port, sink, &scrub::header(header)) }
     }
 
     fn note(&mut self, dir: Way, bytes: &[u8], note: &str) {
-        let entry = Entry { t_us: self.now.as_micros() as u64, dir, hex: hex(bytes), note: note.into() };
+        let bytes = match (&mut self.scrubber, dir) {
+            (Some(scrubber), Way::ToMount) => scrubber.to_mount(bytes),
+            (Some(scrubber), Way::FromMount) => scrubber.from_mount(bytes),
+            _ => bytes.to_vec(),
+        };
+        let entry = Entry { t_us: self.now.as_micros() as u64, dir, hex: hex(&bytes), note: note.into() };
         if let Ok(line) = serde_json::to_string(&entry) {
             let _ = writeln!(self.sink, "{line}");
         }
@@ -131,17 +148,7 @@ impl Replay {
     /// # Errors
     /// The first line that is not understood.
     pub fn parse(trace: &str) -> Result<Replay, TraceError> {
-        let mut entries = Vec::new();
-        for (index, line) in trace.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty()) {
-            let line_number = index + 1;
-            let entry: Entry = serde_json::from_str(line)
-                .map_err(|error| TraceError::Line { line: line_number, why: error.to_string() })?;
-            let bytes =
-                unhex(&entry.hex).ok_or_else(|| TraceError::Hex { line: line_number, hex: entry.hex.clone() })?;
-            if matches!(entry.dir, Way::ToMount | Way::FromMount) && !bytes.is_empty() {
-                entries.push((entry.t_us, entry.dir, bytes));
-            }
-        }
+        let entries = entries(trace)?;
         let first = entries.first().map_or(0, |(t_us, ..)| *t_us);
         Ok(Replay { entries, step: 0, done: 0, now: Duration::ZERO, finished: (Duration::ZERO, first) })
     }
@@ -205,6 +212,21 @@ impl Port for Replay {
     fn set_now(&mut self, now: Duration) {
         self.now = self.now.max(now);
     }
+}
+
+/// The bytes of a trace: when, which way, what.
+fn entries(trace: &str) -> Result<Vec<(u64, Way, Vec<u8>)>, TraceError> {
+    let mut entries = Vec::new();
+    for (index, line) in trace.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty()) {
+        let line_number = index + 1;
+        let entry: Entry = serde_json::from_str(line)
+            .map_err(|error| TraceError::Line { line: line_number, why: error.to_string() })?;
+        let bytes = unhex(&entry.hex).ok_or_else(|| TraceError::Hex { line: line_number, hex: entry.hex.clone() })?;
+        if matches!(entry.dir, Way::ToMount | Way::FromMount) && !bytes.is_empty() {
+            entries.push((entry.t_us, entry.dir, bytes));
+        }
+    }
+    Ok(entries)
 }
 
 pub(in crate::hw) fn hex(bytes: &[u8]) -> String {
