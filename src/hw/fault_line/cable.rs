@@ -87,6 +87,12 @@ impl Cable {
         self.lock().ledger.clone()
     }
 
+    /// Whether the port cannot be opened now.
+    #[must_use]
+    pub fn is_out(&self) -> bool {
+        self.active().iter().any(|(mischief, ..)| mischief.takes_the_port())
+    }
+
     /// When the last of its spells is over; `None` while one waits for its moment.
     #[must_use]
     pub fn calm_from(&self) -> Option<Duration> {

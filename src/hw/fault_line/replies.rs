@@ -193,10 +193,10 @@ impl Replies {
         for (mischief, ..) in active {
             if let Mischief::Flood(most) = mischief
                 && self.flooded < *most
-                && self.incoming.len() < 4096
+                && self.incoming.len() < 512
             {
                 self.cable.strike(*mischief);
-                for _ in 0..(*most - self.flooded).min(4096) {
+                for _ in 0..(*most - self.flooded).min(512) {
                     self.flooded += 1;
                     let byte = self.cable.byte();
                     self.push(if byte == b'#' { b'!' } else { byte }, now, Duration::ZERO);

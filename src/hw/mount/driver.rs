@@ -25,7 +25,7 @@ use self::track::Track;
 use self::watch::{Move, SlewWatch, StopWatch};
 use self::wire::{Outcome, Probe, Wire};
 use super::advice::Disagreement;
-use super::belief::{Belief, LinkState};
+use super::belief::{Belief, LinkState, Precision};
 use super::command::Command;
 use super::dialect::Dialect;
 use super::order::{Direction, Fault, Order, Rate, Report};
@@ -79,12 +79,23 @@ impl Settings {
     }
 }
 
+/// Ends a command of which the mount has heard one half before the line was lost, and which would swallow the probe. Not a bare
+/// `#`: that would carry out a go-to whose `:MS` it had heard.
+const END_OF_HALF: &[u8] = b":#";
 /// Orders that may wait.
 const MOST_ORDERS: usize = 32;
 /// Reports that may wait; older ones are dropped.
 const MOST_REPORTS: usize = 512;
 /// A mount that answers, but not with positions, is tried on a fresh line after this.
 const NO_POSITION: Duration = Duration::from_secs(10);
+
+/// Half a position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct HalfPosition {
+    ra: Angle,
+    form: Precision,
+    at: Duration,
+}
 
 /// How far the conversation has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,7 +140,10 @@ pub struct Driver {
     verify: Option<Verify>,
     /// Positions.
     track: Track,
-    ra: Option<Angle>,
+    /// A right ascension that waits for its declination.
+    ra: Option<HalfPosition>,
+    /// Positions in a row whose halves had two forms.
+    two_forms: u32,
     polls: VecDeque<Command>,
     poll_at: Duration,
     status_at: Duration,
@@ -167,6 +181,7 @@ impl Driver {
             verify: None,
             track: Track::default(),
             ra: None,
+            two_forms: 0,
             polls: VecDeque::new(),
             poll_at: Duration::ZERO,
             status_at: Duration::ZERO,
@@ -183,6 +198,9 @@ impl Driver {
     /// the end first; a slew is never ordered again.
     pub fn link_opened(&mut self, now: Duration) {
         self.wire.open(Probe::Ack, now);
+        if self.belief.counters.reconnects > 0 {
+            self.wire.interject(END_OF_HALF);
+        }
         self.stage = Stage::Finding(Probe::Ack);
         self.belief.link = LinkState::Connecting;
         self.reopen = false;

@@ -170,8 +170,14 @@ impl Simulator {
         self.controller.reported(now)
     }
 
+    /// Whether it answers commands at all: it is neither asleep, nor starting, nor in its firmware loader.
+    #[must_use]
+    pub fn answers(&self) -> bool {
+        self.controller.answers()
+    }
+
     /// The last replies, oldest first.
-    pub fn told(&self) -> impl DoubleEndedIterator<Item = &Told> {
+    pub fn told(&self) -> impl DoubleEndedIterator<Item = &Told> + Clone {
         self.told.iter()
     }
 

@@ -3,7 +3,7 @@
 use std::mem::discriminant;
 use std::time::Duration;
 
-use super::{Driver, NO_POSITION, Stage};
+use super::{Driver, HalfPosition, NO_POSITION, Stage};
 use crate::hw::mount::advice::Disagreement;
 use crate::hw::mount::belief::{Aligned, Known, LinkState, Mounting, Precision, Tracking};
 use crate::hw::mount::command::Command;
@@ -76,10 +76,10 @@ impl Driver {
             Reply::Text(text) => self.belief.firmware = Known::Confirmed { value: text, at: now },
             Reply::Status(alignment) => self.belief.alignment = Known::Confirmed { value: alignment, at: now },
             Reply::Ra(ra, precision) => {
-                self.ra = Some(ra);
+                self.ra = Some(HalfPosition { ra, form: precision, at: now });
                 self.learn_precision(precision, now);
             }
-            Reply::Dec(dec, _) => self.take_position(dec, now),
+            Reply::Dec(dec, precision) => self.take_position(dec, precision, now),
             Reply::Bars(bars) => self.take_bars(bars, now),
             Reply::Latitude(angle) => self.facts.latitude = Some(angle),
             Reply::Longitude(angle) => self.facts.longitude = Some(angle),

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::track::{Gate, Sample};
-use super::{Driver, NO_POSITION, Stage};
+use super::{Driver, HalfPosition, NO_POSITION, Stage};
 use crate::hw::mount::belief::{Aligned, Known, Precision, Tracking};
 use crate::hw::mount::command::Command;
 use crate::hw::mount::estimate::{self, Estimate};
@@ -30,6 +30,9 @@ const SLEW_GRACE: Duration = Duration::from_secs(5);
 const AT_TARGET: Angle = Angle::arcminutes(10.0);
 /// A slew that ends within this of its target has arrived: a poorly aligned mount may correct itself at the end.
 const ARRIVED: Angle = Angle::degrees(0.5);
+/// A declination in another form than its right ascension is half a reply, or somebody has changed the form; a mount that
+/// answers so three times in a row speaks so.
+const MOST_TWO_FORMS: u32 = 3;
 /// One `:Q` is sometimes missed: the end of a move is sent twice.
 const END_AGAIN: Duration = Duration::from_millis(100);
 
@@ -101,10 +104,10 @@ impl Driver {
         self.polls.pop_front();
         match reply {
             Reply::Ra(ra, precision) => {
-                self.ra = Some(ra);
+                self.ra = Some(HalfPosition { ra, form: precision, at: now });
                 self.learn_precision(precision, now);
             }
-            Reply::Dec(dec, _) => self.take_position(dec, now),
+            Reply::Dec(dec, precision) => self.take_position(dec, precision, now),
             Reply::Bars(bars) => self.take_bars(bars, now),
             Reply::Status(alignment) => {
                 let changed = self.belief.alignment.value() != Some(&alignment);
@@ -117,9 +120,17 @@ impl Driver {
         }
     }
 
-    /// A declination completes a position: the gate, what it says of the motion, and the estimate between polls.
-    pub(super) fn take_position(&mut self, dec: Angle, now: Duration) {
-        let Some(ra) = self.ra.take() else { return };
+    /// A declination completes a position: one moment, one form, the gate, what it says of the motion, and the estimate between polls.
+    pub(super) fn take_position(&mut self, dec: Angle, form: Precision, now: Duration) {
+        let Some(half) = self.ra.take() else { return };
+        let two_forms = half.form != form && self.two_forms < MOST_TWO_FORMS;
+        self.two_forms = if half.form == form { 0 } else { self.two_forms + 1 };
+        // Halves of two positions are none: the declination came after a repetition, or is the rest of a longer reply.
+        if two_forms || now.saturating_sub(half.at) > self.settings.timing.first_byte * 2 {
+            self.poll_at = now;
+            return;
+        }
+        let ra = half.ra;
         self.position_due = now + NO_POSITION;
         let sample = Sample { position: Equatorial::new(ra, dec), at: now };
         self.belief.counters.polls += 1;

@@ -249,6 +249,27 @@ fn a_six_hour_session_keeps_its_pace_and_its_size() {
     assert!((40_000..=44_000).contains(&polls), "{polls}");
 }
 
+#[test]
+fn a_declination_that_lost_its_middle_is_not_taken_for_one_in_the_short_form() {
+    let mut peer = Peer::connected();
+    let before = *peer.driver.belief().position.value().unwrap();
+    // Three bytes lost out of "+37\xDF46:01#"; found by the rig with seed 20262223.
+    peer.reply(b":GD#", b"+37\xDF41#");
+    peer.run_until(|peer| peer.count(b":GD#") >= 2);
+    assert_eq!(*peer.driver.belief().position.value().unwrap(), before);
+}
+
+#[test]
+fn a_right_ascension_is_not_joined_to_a_declination_that_came_seconds_later() {
+    let mut peer = Peer::captured();
+    peer.silent_to(b":GD#");
+    peer.run_until(|peer| peer.count(b":GD#") >= 2);
+    peer.reply(b":GR#", b"06:00:00#");
+    peer.reply(b":GD#", b"+37\xDF17:16#");
+    peer.run_until(|peer| peer.driver.belief().position.confirmed().is_some());
+    assert!((peer.driver.belief().position.value().unwrap().ra().to_hours() - 6.0).abs() < 1e-6);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

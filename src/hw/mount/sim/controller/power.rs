@@ -44,6 +44,15 @@ impl Controller {
         }
     }
 
+    /// Whether commands are answered in this state.
+    pub(in crate::hw::mount::sim) fn answers(&self) -> bool {
+        match self.power {
+            Power::Awake | Power::Asking | Power::Parking => true,
+            Power::Parked => !self.faults.park_silence,
+            Power::Asleep | Power::Starting(_) | Power::Downloader | Power::Deaf => false,
+        }
+    }
+
     /// What becomes of a state as time passes.
     pub(super) fn power_tick(&mut self, now: Duration) {
         match self.power {
