@@ -101,8 +101,13 @@ impl Presses {
     /// A key came up.
     pub fn release(&mut self, key: &str, at: Duration, heard: &mut Vec<Heard>) {
         let Some(state) = self.keys.get_mut(key) else { return };
+        if state.stuck {
+            state.last_release = Some(at);
+            return;
+        }
+        // A key that is not down cannot come up: noise, which the next press must not be taken for a bounce of.
+        let Some(since) = state.down.take() else { return };
         state.last_release = Some(at);
-        let Some(since) = state.down.take().filter(|_| !state.stuck) else { return };
         let held = at.saturating_sub(since);
         if !state.told {
             if held >= LONG {
@@ -239,6 +244,13 @@ mod tests {
     fn a_key_with_a_long_meaning_is_told_when_it_comes_up_or_has_been_down_for_800_ms() {
         assert_eq!(told(true, &[(100, true), (180, false)]), [(180, "?")]);
         assert_eq!(told(true, &[(100, true), (2000, false)]), [(900, "?~")]);
+    }
+
+    #[test]
+    fn a_release_out_of_nowhere_makes_no_hold_of_the_next_press() {
+        // Found by fuzzing: the hold was counted from the press before, or from the program's start.
+        let noise = [(100, true), (180, false), (5000, false), (5030, true), (5110, false)];
+        assert_eq!(told(true, &noise), [(180, "?"), (5110, "?")]);
     }
 
     #[test]
