@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use scotopic::hw::handbox::capture;
 use scotopic::hw::port::Port;
 use scotopic::hw::trace::Replay;
 
@@ -13,6 +14,9 @@ use super::assert_harmless;
 /// Something does not hold.
 pub fn check(data: &[u8]) {
     let Ok(text) = str::from_utf8(data) else { return };
+    if let Err(error) = capture::read(text) {
+        assert_harmless(&error.to_string());
+    }
     let mut replay = match Replay::parse(text) {
         Ok(replay) => replay,
         Err(error) => return assert_harmless(&error.to_string()),

@@ -65,6 +65,23 @@ pub enum TraceError {
     },
 }
 
+impl TraceError {
+    /// A line that the JSON reader does not understand; its words hold pieces of the line.
+    pub(in crate::hw) fn line(line: usize, error: &serde_json::Error) -> TraceError {
+        TraceError::Line { line, why: shown(&error.to_string()) }
+    }
+
+    /// Digits that are none.
+    pub(in crate::hw) fn hex(line: usize, hex: &str) -> TraceError {
+        TraceError::Hex { line, hex: shown(hex) }
+    }
+}
+
+/// Words from a file as a terminal can be shown them.
+fn shown(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(200).collect()
+}
+
 /// A port whose traffic is written down. What cannot be written is lost, never the conversation.
 pub struct Recording<P> {
     port: P,
@@ -219,9 +236,8 @@ fn entries(trace: &str) -> Result<Vec<(u64, Way, Vec<u8>)>, TraceError> {
     let mut entries = Vec::new();
     for (index, line) in trace.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty()) {
         let line_number = index + 1;
-        let entry: Entry = serde_json::from_str(line)
-            .map_err(|error| TraceError::Line { line: line_number, why: error.to_string() })?;
-        let bytes = unhex(&entry.hex).ok_or_else(|| TraceError::Hex { line: line_number, hex: entry.hex.clone() })?;
+        let entry: Entry = serde_json::from_str(line).map_err(|error| TraceError::line(line_number, &error))?;
+        let bytes = unhex(&entry.hex).ok_or_else(|| TraceError::hex(line_number, &entry.hex))?;
         if matches!(entry.dir, Way::ToMount | Way::FromMount) && !bytes.is_empty() {
             entries.push((entry.t_us, entry.dir, bytes));
         }
@@ -237,7 +253,7 @@ pub(in crate::hw) fn hex(bytes: &[u8]) -> String {
 }
 
 pub(in crate::hw) fn unhex(text: &str) -> Option<Vec<u8>> {
-    if !text.len().is_multiple_of(2) || !text.is_ascii() {
+    if !text.len().is_multiple_of(2) || !text.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;
     }
     (0..text.len()).step_by(2).map(|at| u8::from_str_radix(&text[at..at + 2], 16).ok()).collect()
@@ -280,6 +296,17 @@ mod tests {
         assert!(matches!(Replay::parse("{}\nnonsense"), Err(TraceError::Line { line: 2, .. })));
         let odd = "{}\n{\"t_us\":1,\"dir\":\"to-mount\",\"hex\":\"0\"}";
         assert!(matches!(Replay::parse(odd), Err(TraceError::Hex { line: 2, .. })));
+    }
+
+    #[test]
+    fn a_damaged_trace_cannot_command_a_terminal() {
+        // Found by fuzzing.
+        for line in [r#"{"t_us":1,"dir":"\u001b[2J","hex":""}"#, r#"{"t_us":1,"dir":"none","hex":"\u001b[2J"}"#] {
+            let error = Replay::parse(&format!("{{}}\n{line}")).unwrap_err().to_string();
+            assert!(error.contains("[2J") && !error.contains(char::is_control), "{error:?}");
+        }
+        let sign = "{}\n{\"t_us\":1,\"dir\":\"to-mount\",\"hex\":\"+f\"}";
+        assert!(matches!(Replay::parse(sign), Err(TraceError::Hex { line: 2, .. })), "a sign is no digit");
     }
 
     #[derive(Clone, Default)]

@@ -50,9 +50,8 @@ pub fn read(text: &str) -> Result<Vec<Event>, TraceError> {
     let lines = text.lines().enumerate().skip(1).take(MOST_LINES).filter(|(_, line)| !line.trim().is_empty());
     let event = |(index, line): (usize, &str)| {
         let line_number = index + 1;
-        let entry: Entry = serde_json::from_str(line)
-            .map_err(|error| TraceError::Line { line: line_number, why: error.to_string() })?;
-        let bytes = unhex(&entry.hex).ok_or(TraceError::Hex { line: line_number, hex: entry.hex })?;
+        let entry: Entry = serde_json::from_str(line).map_err(|error| TraceError::line(line_number, &error))?;
+        let bytes = unhex(&entry.hex).ok_or_else(|| TraceError::hex(line_number, &entry.hex))?;
         let note = entry.note.chars().filter(|c| !c.is_control()).collect();
         Ok(Event { at: Duration::from_micros(entry.t_us), bytes, note })
     };
