@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The real kernel's display controller, in a virtual machine: KMS and framebuffer sinks of scotopic on QEMU's `bochs` display,
-# a framebuffer of the kernel's `vfb` beside it. What the virtual screen shows is read back by QEMU and held against the picture
+# and beside it the kernel's `vfb`, whose 8 bits a pixel must be refused. What the virtual screen shows is read back by QEMU and held against the picture
 # that `scotopic projector pattern --out` writes, pixel by pixel; at the end the screen must be black.
 #
 # Wiring: none. Needs Linux on x86-64 and from apt: qemu-system-x86 busybox-static python3, and the package of a Debian kernel
@@ -62,7 +62,7 @@ export PATH=/bin HOME=/tmp RUST_BACKTRACE=1
 /bin/busybox --install -s /bin
 mount -t proc none /proc; mount -t sysfs none /sys; mount -t devtmpfs none /dev
 while read -r module; do
-    case $module in vfb) set -- vfb_enable=1 videomemorysize=4194304 mode=640x480-32 ;; *) set -- ;; esac
+    case $module in vfb) set -- vfb_enable=1 ;; *) set -- ;; esac
     insmod /modules/$module.ko "$@" || echo "MARK no module $module"
 done < /modules/order
 sleep 1
@@ -73,10 +73,11 @@ shown() { # shown NAME PATTERN PROJECTOR: shows it for twenty seconds; the host 
     sleep 2; echo "MARK look $1"; cat /tmp/said; wait $child; echo "MARK end $1 $?"; sleep 1
 }
 connector=$(ls /sys/class/drm | sed -n 's/^card[0-9]*-\(Virtual.*\)/\1/p' | head -1)
+# The kernel's framebuffer is read back from its device: without a console on it this machine's screen does not show it.
+scotopic projector pattern finder --projector fb:/dev/fb0 --for 8 & sleep 4
+echo "MARK framebuffer"; gzip -c < /dev/fb0 | base64; echo "MARK framebufferend"; wait
 for pattern in grid orientation greys; do shown "kms-$pattern" $pattern "kms:$connector"; done
-shown fb-finder finder fb:/dev/fb0
-scotopic projector pattern orientation --projector fb:/dev/fb1 --for 4 & sleep 2
-echo "MARK vfb"; gzip -c < /dev/fb1 | base64; echo "MARK vfbend"; wait
+scotopic projector pattern orientation --projector fb:/dev/fb1 --for 1; echo "MARK eight $?"
 echo "MARK refused"; scotopic projector pattern grid --projector kms:HDMI-A-9 --for 1
 scotopic projector pattern ghost --projector "kms:$connector" --for 20 & sleep 2
 scotopic projector pattern grid --projector "kms:$connector" --for 1; echo "MARK second $?"
@@ -98,7 +99,7 @@ trap 'kill $qemu 2>/dev/null || true' EXIT
 
 python3 - "$work" "$program" <<'PY'
 """Looks at the virtual screen whenever the guest says so, and holds it against what scotopic itself draws into a file."""
-import base64, gzip, json, pathlib, socket, struct, subprocess, sys, time, zlib
+import base64, json, pathlib, socket, struct, subprocess, sys, time, zlib
 work, program = pathlib.Path(sys.argv[1]), sys.argv[2]
 serial, checks, seen = work / "serial.log", [], 0
 
@@ -174,12 +175,13 @@ while not done and time.time() < deadline:
             width, height, pixels = look("killed")
             lit = sum(pixels[i] > 0 for i in range(0, len(pixels), 3)) / (width * height)
             check("after kill -9 the pattern is gone", lit < 0.2 and pixels != expected("ghost", width, height), f"{lit:.4f} of the screen lit (the kernel's console)")
-        elif line == "MARK vfbend":
-            body = text.split("MARK vfb\n" if "MARK vfb\n" in text else "MARK vfb\r\n")[1].split("MARK vfbend")[0]
-            body = "".join(l for l in body.split() if " " not in l)
-            bytes_ = gzip.decompress(base64.b64decode(body))[:640 * 480 * 4]
-            rgb = b"".join(bytes([bytes_[i + 2], bytes_[i + 1], bytes_[i]]) for i in range(0, len(bytes_), 4))
-            same("vfb-orientation", "orientation", lambda: (640, 480, rgb))
+        elif line == "MARK framebufferend":
+            body = "".join(text.split("MARK framebuffer", 1)[1].split("MARK framebufferend")[0].split())
+            held = zlib.decompress(base64.b64decode(body), 31)[:1280 * 720 * 4]
+            rgb = b"".join(bytes((held[i + 2], held[i + 1], held[i])) for i in range(0, len(held), 4))
+            same("framebuffer, read back from its device", "finder", lambda: (1280, 720, rgb))
+        elif line.startswith("MARK eight "):
+            check("a framebuffer of 8 bits is refused", line.split()[2] == "1", f"exit {line.split()[2]}")
         elif line == "MARK done":
             done = True
 check("the guest came to its end", done, "MARK done")
