@@ -17,12 +17,18 @@
 mod bench;
 #[path = "hil/conversation.rs"]
 mod conversation;
+#[path = "hil/exits.rs"]
+mod exits;
 #[path = "hil/faults.rs"]
 mod faults;
+#[path = "hil/field.rs"]
+mod field;
 #[path = "hil/inventory.rs"]
 mod inventory;
 #[path = "hil/night.rs"]
 mod night;
+#[path = "hil/program.rs"]
+mod program;
 #[path = "hil/realtime.rs"]
 mod realtime;
 #[path = "hil/replug.rs"]
@@ -68,6 +74,11 @@ const SECTIONS: &[Section] = &[
     }),
     ("real-nights", |_, report| realtime::nights(report)),
     ("six-hours", |_, report| faults::six_hours(report)),
+    ("program", |rig, report| {
+        field::by_hand_controller(rig, report);
+        field::stop_key(rig, report);
+    }),
+    ("exits", |_, report| exits::every_way(report)),
 ];
 
 /// The seed of the day, unless `SCOTOPIC_RIG_SEED` says another: the same everywhere, so that CI can be repeated at a desk.

@@ -13,6 +13,8 @@ use crate::hw::projector::ProjectorAddress;
 use crate::sky::site::Site;
 use crate::sky::time::Utc;
 
+/// Threads that break.
+mod alarm;
 /// Clocks: the machine's, or one that runs as fast as the machine can.
 mod clock;
 /// The supervisor beside an open line.

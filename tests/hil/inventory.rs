@@ -14,7 +14,9 @@ pub(crate) fn take(rig: &Rig, report: &mut Report) {
     if !rig.note.is_empty() {
         report.inventory("note", rig.note.clone());
     }
-    report.inventory("program", format!("scotopic {}", env!("CARGO_PKG_VERSION")));
+    let built = if std::env::var_os("SCOTOPIC_RIG_PROGRAM").is_some() { "as named" } else { "built for tests" };
+    let path = super::program::path();
+    report.inventory("program", format!("scotopic {}, {built}: {}", env!("CARGO_PKG_VERSION"), path.display()));
     let kernel = fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
     report.inventory("kernel", format!("Linux {}", kernel.trim()));
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -86,11 +88,6 @@ pub(crate) fn name_what_is_missing(rig: &Rig, report: &mut Report) {
     if rig.projector.is_none() {
         report.not_run("projector", "real light module over I2C, brightness read back", &why("projector"));
     }
-    report.not_run(
-        "program",
-        "the built program: key to picture, overlay age, tears, stop key, exit paths",
-        "these checks are not part of the rig yet",
-    );
     report.not_run(
         "projector",
         "KMS page flips on a real kernel (vkms)",

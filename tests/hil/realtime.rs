@@ -25,7 +25,7 @@ use super::truth::STOP_BUDGET;
 
 const NIGHTS: u64 = 200;
 /// So many at once: they wait most of the time.
-const AT_ONCE: usize = 100;
+const AT_ONCE: usize = 67;
 
 /// A serial port whose other end is a simulated mount, through a pty.
 struct PtyPort {

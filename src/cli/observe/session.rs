@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
+use super::alarm::{Alarm, rehearse};
 use super::clock::Clock;
 use super::handbox::{self, DisplayWatch, Listening};
 use super::keeper::Keeper;
@@ -57,6 +58,8 @@ enum Wake {
     Projector(Told),
     AskedToEnd,
     TerminalGone,
+    /// A thread has panicked: which.
+    Broke(&'static str),
 }
 
 /// The session at work.
@@ -75,6 +78,8 @@ struct Session {
     screen: Option<(Taken, Depth)>,
     inbox: Receiver<Wake>,
     ended: bool,
+    /// The thread that has panicked.
+    broke: Option<&'static str>,
     dirty: bool,
     drawn_at: Option<Duration>,
 }
@@ -92,7 +97,8 @@ pub(super) fn in_terminal(opened: Opened) -> Result<(), Failure> {
     let mut session = Session::new(opened, &wakes, inbox)?;
     let taken = Taken::take(depth).map_err(|error| Failure::Failed(format!("the terminal cannot be used: {error}")))?;
     session.screen = Some((taken, depth));
-    std::thread::Builder::new().name("keys".into()).spawn(move || listen(&wakes)).map_err(Failure::failed)?;
+    let clock = session.clock;
+    std::thread::Builder::new().name("keys".into()).spawn(move || listen(&wakes, clock)).map_err(Failure::failed)?;
     session.run(|_| false)?;
     Ok(())
 }
@@ -128,9 +134,11 @@ pub(super) fn without_terminal(opened: Opened, seconds: f64, targets: &[String])
 }
 
 /// Waits for keys, in a thread of its own.
-fn listen(wakes: &Sender<Wake>) {
+fn listen(wakes: &Sender<Wake>, clock: Clock) {
+    let _alarm = Alarm::new(wakes, Wake::Broke("keyboard"));
     loop {
         let wake = keys::next().map_or(Wake::TerminalGone, Wake::Input);
+        rehearse("keys", clock.now());
         let gone = matches!(wake, Wake::TerminalGone);
         if wakes.send(wake).is_err() || gone {
             return;
@@ -142,8 +150,13 @@ impl Session {
     fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
         let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices, handbox } = opened;
         opening.projector = projection.describe();
-        let told = wakes.clone();
-        projection.start(clock, move |said| drop(told.send(Wake::Projector(said)))).map_err(Failure::failed)?;
+        let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("projector")));
+        let started = projection.start(clock, move |said| {
+            let _held = &alarm;
+            rehearse("projector", clock.now());
+            drop(told.send(Wake::Projector(said)));
+        });
+        started.map_err(Failure::failed)?;
         let told = wakes.clone();
         let keeper = Keeper::new(state_path, move |why| drop(told.send(Wake::Notice(why)))).map_err(Failure::failed)?;
         for notice in notices {
@@ -155,11 +168,16 @@ impl Session {
         std::thread::spawn(|| drop(Catalogue::embedded().complete("M", 1)));
         let told = wakes.clone();
         signals::listen(move || drop(told.send(Wake::AskedToEnd))).map_err(Failure::failed)?;
-        let told = wakes.clone();
-        let handbox = handbox.listen(clock.start(), move |said| told.send(Wake::Handbox(said)).is_ok());
-        let told = wakes.clone();
+        let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("hand controller")));
+        let handbox = handbox.listen(clock.start(), move |said| {
+            let _held = &alarm;
+            told.send(Wake::Handbox(said)).is_ok()
+        });
+        let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("mount")));
         let line = match clock {
             Clock::Real { .. } => Line::threaded(pump, clock, alive.clone(), move |said| {
+                let _held = &alarm;
+                rehearse("mount", clock.now());
                 let wake = match said {
                     Said::Update(update) => Wake::Mount(update),
                     Said::Unguarded(why) => Wake::Notice(why),
@@ -182,6 +200,7 @@ impl Session {
             screen: None,
             inbox,
             ended: false,
+            broke: None,
             dirty: true,
             drawn_at: None,
         })
@@ -225,7 +244,13 @@ impl Session {
                 self.projection.stamped(&stamp);
             }
         }
-        Ok(())
+        match self.broke {
+            None => Ok(()),
+            Some(thread) => Err(Failure::Failed(format!(
+                "the part that listens to the {thread} broke (its own words stand above), so the session has ended: look at the \
+                 telescope, then start again"
+            ))),
+        }
     }
 
     /// Waits for the next thing to happen, and takes in all that has.
@@ -284,6 +309,7 @@ impl Session {
             Wake::Handbox(handbox::Told::Pressed(pressed)) => self.pressed(pressed),
             Wake::Handbox(handbox::Told::Notice(text)) | Wake::Notice(text) => self.notice(text),
             Wake::Projector(told) => self.projected(told),
+            Wake::Broke(thread) => (self.ended, self.broke) = (true, Some(thread)),
             Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
         }
     }
