@@ -54,6 +54,7 @@ pub fn check(data: &[u8]) {
         if turn == 0 {
             whole.reset();
             pieces.reset();
+            told.recent.clear();
         }
     }
     // The end of a frame may begin a press, the end of that a silence.
