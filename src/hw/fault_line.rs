@@ -4,7 +4,7 @@
 //! driver <-> FaultLine <-> port       Cable: the spells, the seed, the ledger; it outlives the ports
 //! ```
 //!
-//! It stands between any two ports, under a virtual clock or a real one ([`Port::set_now`] tells it which), and can pace the
+//! It stands between any two ports, under a virtual clock or a real one (`Port::set_now` tells it which), and can pace the
 //! bytes to a baud rate, which no pseudo terminal does. It knows no protocol: a reply is what comes in after something
 //! was sent, or after a pause.
 

@@ -5,7 +5,7 @@
 //! bytes of the tapped line (tap) -> frames and patterns (decoder, keymap) -> presses (presses) -> Heard
 //! ```
 //!
-//! Where no cable is tapped, a presenter or a gamepad ([`presenter`]) or the display ([`watch`]) give the same [`Pressed`].
+//! Where no cable is tapped, a presenter or a gamepad (`presenter`) or the display (`watch`) give the same `Pressed`.
 
 use std::time::Duration;
 

@@ -5,8 +5,8 @@
 //! L(view) = int exp(-tau) [ beta_R (P_R E_sun + S_R) + beta_a (P_a E_sun + S_a) ] ds  +  exp(-tau) L_ground
 //! ```
 //!
-//! E_sun is the direct beam at a point ([`sunlight`]), S what has been scattered before, averaged over directions with the
-//! phase function of molecules and of haze ([`field`]). The path of the view ray is bent and stops at the ground; points in
+//! E_sun is the direct beam at a point (`sunlight`), S what has been scattered before, averaged over directions with the
+//! phase function of molecules and of haze (`field`). The path of the view ray is bent and stops at the ground; points in
 //! the Earth's shadow get no direct beam.
 
 use glam::DVec3;
