@@ -47,6 +47,8 @@ pub struct FaultLine<P> {
     /// Bytes that [`Mischief::Slow`] has let pass.
     let_pass: u64,
     replies: Replies,
+    /// When the port behind was read last: it may wait for bytes, and need not while there are some here.
+    read_at: Option<Duration>,
     gone: bool,
 }
 
@@ -63,6 +65,7 @@ impl<P: Port> FaultLine<P> {
             outgoing_free: now,
             recent: Vec::new(),
             let_pass: 0,
+            read_at: None,
             gone: false,
         };
         line.refresh();
@@ -132,6 +135,23 @@ impl<P: Port> FaultLine<P> {
         }
     }
 
+    /// Takes in what the port behind has.
+    fn read(&mut self, restarting: bool) -> Result<(), PortError> {
+        let (mut chunk, byte_time) = ([0; 512], self.byte_time());
+        loop {
+            let count = self.port.receive(&mut chunk)?;
+            for byte in &chunk[..count] {
+                if !restarting {
+                    self.replies.come(*byte, &self.active, self.now, byte_time);
+                }
+            }
+            if count < chunk.len() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
     /// Hands on what is out by now.
     fn carry(&mut self) -> Result<(), PortError> {
         let due = self.outgoing.iter().take_while(|(at, _)| *at <= self.now).count();
@@ -156,19 +176,11 @@ impl<P: Port> Port for FaultLine<P> {
         {
             self.replies.restarted(self.opened.max(since), self.now, &self.cable);
         }
-        let (mut chunk, byte_time) = ([0; 512], self.byte_time());
-        loop {
-            let count = self.port.receive(&mut chunk)?;
-            for byte in &chunk[..count] {
-                if !restarting {
-                    self.replies.come(*byte, &self.active, self.now, byte_time);
-                }
-            }
-            if count < chunk.len() {
-                break;
-            }
-        }
         self.replies.by_themselves(&self.active, self.now);
+        if self.read_at != Some(self.now) || !self.replies.has_some(self.now) {
+            self.read_at = Some(self.now);
+            self.read(restarting)?;
+        }
         let count = self.replies.hand_on(buffer, self.now);
         if count > 0 && self.cable.provoked(&[], self.replies.in_this_reply()) {
             self.refresh();

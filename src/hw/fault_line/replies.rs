@@ -205,6 +205,11 @@ impl Replies {
         }
     }
 
+    /// Whether anything can be handed on now.
+    pub(super) fn has_some(&self, now: Duration) -> bool {
+        self.incoming.front().is_some_and(|(at, _)| *at <= now)
+    }
+
     /// Hands on what has come by now.
     pub(super) fn hand_on(&mut self, buffer: &mut [u8], now: Duration) -> usize {
         let due = self.incoming.iter().take(buffer.len()).take_while(|(at, _)| *at <= now).count();
