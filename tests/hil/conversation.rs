@@ -1,7 +1,8 @@
 //! The mount asked everything that it is asked at night, each command timed, and the conversation recorded.
 //!
 //! Wiring: computer's serial adapter - #507 cable - the LX200GPS' RS-232 socket next to the handbox port. Motors off: nothing is
-//! sent that moves. On the loopback rig a pty stands for the cable, with a simulated mount that takes 1.04 ms for a byte.
+//! sent that moves. On a null-modem rig: near adapter - null-modem cable - far adapter, where a simulated mount speaks. On the
+//! loopback rig a pty stands for the cable, with a simulated mount that takes 1.04 ms for a byte.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -74,15 +75,35 @@ impl<P: Port> Port for Timed<P> {
     }
 }
 
-/// The conversation with the rig's mount, or with a simulated one behind a pty.
+/// A simulated mount at the far end of a cable, until it is over.
+fn speak_at(path: &str, baud: u32, settings: Settings, over: &AtomicBool) {
+    let mut line = SerialLine::open(path, baud).unwrap();
+    let (mut simulator, start) = (Simulator::new(settings), Instant::now());
+    let (mut heard, mut waiting) = ([0; 256], Vec::new());
+    while !over.load(Ordering::Relaxed) {
+        let count = line.receive(&mut heard).unwrap();
+        let now = start.elapsed();
+        simulator.feed(&heard[..count], now);
+        waiting.extend(simulator.drain(now));
+        let sent = line.send(&waiting).unwrap();
+        waiting.drain(..sent);
+    }
+}
+
+/// The conversation with the rig's mount, or with a simulated one over a null modem or a pty.
 pub(crate) fn hold(rig: &Rig, report: &mut Report) {
     let began = Instant::now();
     let over = Arc::new(AtomicBool::new(false));
     let settings = Settings::default();
     let ours = Ours { utc_at_start: settings.start, site: Some(settings.site) };
-    let (path, baud, far) = match &rig.mount {
-        Some(mount) => (stable_name(&mount.port), mount.baud, None),
-        None => {
+    let (path, baud, far) = match (&rig.mount, &rig.null_modem) {
+        (Some(mount), _) => (stable_name(&mount.port), mount.baud, None),
+        (None, Some(modem)) => {
+            let (path, baud, ended) = (stable_name(&modem.far), modem.baud, Arc::clone(&over));
+            let far = std::thread::spawn(move || speak_at(&path, baud, settings, &ended));
+            (stable_name(&modem.near), modem.baud, Some(far))
+        }
+        (None, None) => {
             let (told, name) = std::sync::mpsc::channel();
             let ended = Arc::clone(&over);
             let far = std::thread::spawn(move || {
@@ -160,10 +181,10 @@ pub(crate) fn hold(rig: &Rig, report: &mut Report) {
         wrong.push(format!("faults on a good line: {counters:?}"));
     }
     let outcome = if wrong.is_empty() { Outcome::Passed } else { Outcome::Failed(wrong.join("\n")) };
-    let name = if rig.mount.is_some() {
-        "real mount, motors off: asked everything"
-    } else {
-        "simulated mount over a pty: asked everything"
+    let name = match (&rig.mount, &rig.null_modem) {
+        (Some(_), _) => "real mount, motors off: asked everything",
+        (None, Some(_)) => "simulated mount over a null modem: asked everything",
+        (None, None) => "simulated mount over a pty: asked everything",
     };
     report.check("mount", name, outcome, began.elapsed());
 }

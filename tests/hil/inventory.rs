@@ -69,24 +69,26 @@ fn adapter(port: &str) -> String {
 /// Names each check that this rig cannot make.
 pub(crate) fn name_what_is_missing(rig: &Rig, report: &mut Report) {
     let why = |what: &str| format!("the rig '{}' has no {what}: name it in the rig file (hil/README.md)", rig.name);
+    let slewing = "real mount, slew and stop with a person at the switch";
     if rig.mount.is_none() {
         report.not_run("mount", "real mount, motors off", &why("mount"));
-        report.not_run("mount", "real mount, slew and stop with a person at the switch", &why("mount with motors"));
-    } else if !rig.mount.as_ref().is_some_and(|mount| mount.may_move) {
-        report.not_run(
-            "mount",
-            "real mount, slew and stop with a person at the switch",
-            "the rig file does not say may_move",
-        );
+        report.not_run("mount", slewing, &why("mount with motors"));
+    } else {
+        report.not_run("mount", slewing, "done by hand: hil/procedures/mount.md");
     }
     if rig.null_modem.is_none() {
         report.not_run("mount", "two adapters and a null-modem cable", &why("null modem"));
+    } else {
+        report.not_run("mount", "an adapter pulled and replugged", "done by hand: hil/procedures/null-modem.md");
     }
     if rig.tap.is_none() {
         report.not_run("tap", "real hand controller's cable", &why("tap"));
     }
+    let light = "real light module over I2C, brightness read back";
     if rig.projector.is_none() {
-        report.not_run("projector", "real light module over I2C, brightness read back", &why("projector"));
+        report.not_run("projector", light, &why("projector"));
+    } else {
+        report.not_run("projector", light, "done by hand with `scotopic projector status`: docs/hardware/light.md");
     }
     report.not_run(
         "projector",
