@@ -79,7 +79,7 @@ pub struct Arguments {
     /// Folder of your photographs and animations [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub photographs: Option<PathBuf>,
-    /// Write all that passes between mount and computer to this file (the site is in it too)
+    /// Write all that passes between mount and computer to this file (without your site)
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
     /// How long a session without a terminal lasts, in seconds [default: until it is asked to end]

@@ -53,7 +53,7 @@ pub(super) fn recorded(mut opener: Opener, path: &Path, mount: &str) -> Result<O
     Ok(Box::new(move || {
         let line = opener()?;
         let sink = Sink { file: Arc::clone(&file), in_header: std::mem::replace(&mut opened_before, true) };
-        Ok(Box::new(Recording::new(line, Box::new(sink), &header)) as Box<dyn Port>)
+        Ok(Box::new(Recording::scrubbed(line, Box::new(sink), &header)) as Box<dyn Port>)
     }))
 }
 
