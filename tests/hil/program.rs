@@ -48,7 +48,11 @@ pub(crate) fn home(name: &str) -> PathBuf {
 /// The program that is checked: the one that cargo has built for the tests, or the one that `SCOTOPIC_RIG_PROGRAM` names (a
 /// release build, whose times count).
 pub(crate) fn path() -> PathBuf {
-    std::env::var_os("SCOTOPIC_RIG_PROGRAM").map_or_else(|| env!("CARGO_BIN_EXE_scotopic").into(), PathBuf::from)
+    std::env::var_os("SCOTOPIC_RIG_PROGRAM").map_or_else(
+        || env!("CARGO_BIN_EXE_scotopic").into(),
+        // It is started in folders of its own: a path that is counted from here must be whole.
+        |named| std::fs::canonicalize(named).unwrap(),
+    )
 }
 
 /// The program with its home there.
