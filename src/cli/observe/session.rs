@@ -309,7 +309,11 @@ impl Session {
             Wake::Handbox(handbox::Told::Pressed(pressed)) => self.pressed(pressed),
             Wake::Handbox(handbox::Told::Notice(text)) | Wake::Notice(text) => self.notice(text),
             Wake::Projector(told) => self.projected(told),
-            Wake::Broke(thread) => (self.ended, self.broke) = (true, Some(thread)),
+            Wake::Broke(thread) => {
+                self.broke = Some(thread);
+                // As if somebody had asked: what moves is stopped before the session ends.
+                self.happened(Event::AskedToEnd);
+            }
             Wake::AskedToEnd | Wake::TerminalGone => self.happened(Event::AskedToEnd),
         }
     }

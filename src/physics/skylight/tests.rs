@@ -63,6 +63,34 @@ fn shells_depth(scene: &Scene) -> f64 {
     (0..borders.len() - 1).map(|i| shells.shell(i).extinction() * (borders[i + 1] - borders[i])).sum()
 }
 
+/// What comes in goes out: without absorption and over black ground, all light that enters a flat atmosphere leaves it again,
+/// upwards or into the ground. Nothing of this is shared with the photons.
+#[test]
+fn no_light_is_lost_or_made() {
+    let air = us76::profile();
+    let below = Scene { earth_radius_m: 1e9, ground_albedo: 0.0, ..scene(&air, 450.0, 40.0) };
+    let above = Scene { observer_height_m: 9e4, ..below };
+    let (up, down) = (Skylight::new(&below).unwrap(), Skylight::new(&above).unwrap());
+    // Flux through a level plane from one side: the middles of 24 steps of sine squared and 12 of azimuth.
+    let flux = |sky: &Skylight, side: f64| {
+        let mut sum = 0.0;
+        for i in 0..24 {
+            let altitude = Angle::radians(side * ((f64::from(i) + 0.5) / 24.0).sqrt().asin());
+            for k in 0..12 {
+                let azimuth = Angle::degrees((f64::from(k) + 0.5) * 15.0);
+                sum += sky.radiance(altitude, azimuth).total() * std::f64::consts::PI / (24.0 * 12.0);
+            }
+        }
+        sum
+    };
+    let sine = 40f64.to_radians().sin();
+    let beam = up.sunlight.at(0.0, 50f64.to_radians()).irradiance * sine;
+    let (through, back) = (flux(&up, 1.0), flux(&down, -1.0));
+    assert!(through > 0.02 && back > 0.02, "{through}, {back}");
+    let balance = (beam + through + back) / sine;
+    assert!((balance - 1.0).abs() < 0.01, "{balance}: beam {beam}, through {through}, back {back}");
+}
+
 #[test]
 fn the_column_of_shells_is_the_published_rayleigh_depth() {
     // Bodhaine et al. (1999), table 3: 0.09727 at 550 nm, 45 degrees, 360 ppm; 0.1 % of it lies above 100 km or in rounding.
