@@ -1,4 +1,5 @@
-//! What nature does: air, what its molecules and particles do to light, the bending of light by it, and the low Sun behind it.
+//! What nature does: air, what its molecules and particles do to light, the bending of light by it, the low Sun behind it;
+//! dust between the stars.
 
 /// Particles in the air: size distributions, Mie's series, the climates of OPAC.
 pub mod aerosol;
@@ -6,6 +7,8 @@ pub mod aerosol;
 pub mod air;
 /// From spectra to colours.
 pub mod colour;
+/// Dust between the stars, lit by them.
+pub mod dust;
 /// Absorption by ozone.
 pub mod ozone;
 /// Scattering by the molecules of the air.

@@ -1,0 +1,14 @@
+//! Dust lit by stars: volumes of dust, what one grain does to light, and the light that reaches an eye.
+//!
+//! ```text
+//! volume + stars -> star light in the dust -> light scattered towards the eye -> picture (+ error, + time)
+//! ```
+
+/// Where an eye stands, and the ray of each of its pixels.
+pub mod camera;
+/// The law by which a grain turns light aside.
+pub mod phase;
+/// Dust, bands and stars: what is lit and by what.
+pub mod scene;
+/// Dust on a grid of voxels.
+pub mod volume;
