@@ -6,6 +6,10 @@
 
 /// Where an eye stands, and the ray of each of its pixels.
 pub mod camera;
+/// Columns of dust between two points, and from the stars.
+pub mod light;
+/// What a model of scattering tells the renderer.
+pub mod model;
 /// The law by which a grain turns light aside.
 pub mod phase;
 /// Dust, bands and stars: what is lit and by what.
