@@ -4,6 +4,7 @@
 //! module's do; the terminal is a pty.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -11,7 +12,8 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 use scotopic::hw::light::fake::stored::StoredBus;
 
-use super::program::{Program, command, home, wait_at_most, wait_for};
+use super::field::{Mount, TIME};
+use super::program::{Program, command, home, raw_pty, wait_at_most, wait_for};
 use super::report::{Outcome, Report};
 
 /// LEDs must be off so soon after the end: the guard of a killed program has some work to do.
@@ -20,10 +22,22 @@ const DARK_WITHIN: Duration = Duration::from_secs(5);
 const CALIBRATION: &str = "module = \"dlpc2607\"\nid = 0x8A\nleds = 1\n\n[optics]\nmeter = \"eyepiece\"\nfixed_nd = 1e-4\n\
     beam_splitter = 0.1\n\n[[row]]\ncode = 12\ncd_m2 = 0.06\n\n[[row]]\ncode = 775\ncd_m2 = 1.8\n";
 
+/// What a session has beside the light.
+#[derive(Clone, Copy, PartialEq)]
+enum Fitted {
+    Nothing,
+    /// A tapped hand controller, of which a key is pressed in the end.
+    HandController,
+    /// A mount on a cable: only of a real one something is remembered. The picture is pushed in the end, which is remembered.
+    Cable,
+}
+
 /// A way to end.
 struct Way {
     name: &'static str,
     environment: &'static [(&'static str, &'static str)],
+    /// Beside the light.
+    fitted: Fitted,
     end: fn(&mut Program, &Path),
     /// Whether the program can give the terminal back: nothing that is killed can.
     gives_back: bool,
@@ -32,7 +46,7 @@ struct Way {
 }
 
 const fn way(name: &'static str, end: fn(&mut Program, &Path)) -> Way {
-    Way { name, environment: &[], end, gives_back: true, ends: true }
+    Way { name, environment: &[], fitted: Fitted::Nothing, end, gives_back: true, ends: true }
 }
 
 const fn panic(name: &'static str, environment: &'static [(&'static str, &'static str)]) -> Way {
@@ -55,6 +69,14 @@ const WAYS: &[Way] = &[
     panic("panic in the mount's thread", &[("SCOTOPIC_TEST_PANIC", "6@mount")]),
     panic("panic in the projector's thread", &[("SCOTOPIC_TEST_PANIC", "6@projector")]),
     panic("panic in the keys' thread", &[("SCOTOPIC_TEST_PANIC", "6@keys")]),
+    Way {
+        fitted: Fitted::HandController,
+        ..panic("panic in the hand controller's thread", &[("SCOTOPIC_TEST_PANIC", "6@handbox")])
+    },
+    Way {
+        fitted: Fitted::Cable,
+        ..panic("panic in the thread that remembers", &[("SCOTOPIC_TEST_PANIC", "6@keeper")])
+    },
     Way { gives_back: false, ..way("lost terminal", Program::lose_terminal) },
     Way {
         ends: false,
@@ -86,7 +108,16 @@ fn lit(light: &Path) -> bool {
 fn leave(number: usize, way: &Way) -> Vec<String> {
     let home = home(&format!("exit-{number}"));
     let (settings, light) = settle(&home);
-    let arguments = ["observe", "--config", &settings, "--projector", "png:frames", "--time", "2026-11-22T20:00:00Z"];
+    let mut arguments = vec!["observe", "--config", &settings, "--projector", "png:frames", "--time", TIME];
+    let handset = (way.fitted == Fitted::HandController).then(raw_pty);
+    let mount = (way.fitted == Fitted::Cable).then(Mount::new);
+    let line = mount.as_ref().map(|mount| format!("serial:{}", mount.endpoint));
+    if let Some((_, tap, _)) = &handset {
+        arguments.extend(["--handbox", tap, "--handbox-map", "ascii"]);
+    }
+    if let Some(line) = &line {
+        arguments.extend(["--site", "49.26,7.04,230", "--mount", line]);
+    }
     let mut program = Program::start(&home, way.environment, &arguments);
     let mut wrong = Vec::new();
     if !wait_for(|| lit(&light) || program.child.try_wait().unwrap().is_some()) || !lit(&light) {
@@ -98,6 +129,13 @@ fn leave(number: usize, way: &Way) -> Vec<String> {
         // That thread wakes when a key is pressed.
         std::thread::sleep(Duration::from_secs(8));
         program.press("l");
+    }
+    if way.fitted != Fitted::Nothing {
+        std::thread::sleep(Duration::from_secs(8));
+        program.press("\x1b[C");
+    }
+    if let Some((mut master, ..)) = handset {
+        master.write_all(b"?").unwrap();
     }
     if way.ends && program.ended().is_none() {
         wrong.push("the program did not end".into());
@@ -113,11 +151,19 @@ fn leave(number: usize, way: &Way) -> Vec<String> {
     wrong
 }
 
+/// Where a disk is full.
+#[derive(Clone, Copy, PartialEq)]
+enum Full {
+    Nowhere,
+    Summary,
+    Recording,
+}
+
 /// Without a terminal: the end of its time, SIGTERM, and nobody who reads its summary.
-fn headless(number: usize, seconds: &str, end: Option<Signal>, deaf: bool) -> Vec<String> {
+fn headless(number: usize, seconds: &str, end: Option<Signal>, full: Full) -> Vec<String> {
     let home = home(&format!("headless-{number}"));
     let (settings, light) = settle(&home);
-    let arguments = [
+    let mut arguments = vec![
         "observe",
         "--headless",
         "--for",
@@ -127,10 +173,16 @@ fn headless(number: usize, seconds: &str, end: Option<Signal>, deaf: bool) -> Ve
         "--projector",
         "png:frames",
         "--time",
-        "2026-11-22T20:00:00Z",
+        TIME,
     ];
-    let out =
-        if deaf { Stdio::from(fs::File::options().write(true).open("/dev/full").unwrap()) } else { Stdio::null() };
+    if full == Full::Recording {
+        arguments.extend(["--record", "/dev/full"]);
+    }
+    let out = if full == Full::Summary {
+        Stdio::from(fs::File::options().write(true).open("/dev/full").unwrap())
+    } else {
+        Stdio::null()
+    };
     let mut child = command(&home, &arguments).stdin(Stdio::null()).stdout(out).stderr(Stdio::null()).spawn().unwrap();
     let mut wrong = Vec::new();
     if !wait_for(|| lit(&light) || child.try_wait().unwrap().is_some()) || !lit(&light) {
@@ -171,9 +223,14 @@ pub(crate) fn every_way(report: &mut Report) {
     }
     std::thread::scope(|scope| {
         let threads = [
-            scope.spawn(|| (Instant::now(), "headless, its time is over", headless(0, "8", None, false))),
-            scope.spawn(|| (Instant::now(), "headless, SIGTERM", headless(1, "60", Some(Signal::TERM), false))),
-            scope.spawn(|| (Instant::now(), "headless, its summary meets a full disk", headless(2, "8", None, true))),
+            scope.spawn(|| (Instant::now(), "headless, its time is over", headless(0, "8", None, Full::Nowhere))),
+            scope.spawn(|| (Instant::now(), "headless, SIGTERM", headless(1, "60", Some(Signal::TERM), Full::Nowhere))),
+            scope.spawn(|| {
+                (Instant::now(), "headless, its summary meets a full disk", headless(2, "8", None, Full::Summary))
+            }),
+            scope.spawn(|| {
+                (Instant::now(), "headless, its recording meets a full disk", headless(3, "8", None, Full::Recording))
+            }),
         ];
         results.extend(threads.into_iter().map(|thread| {
             let (began, name, wrong) = thread.join().unwrap();

@@ -21,18 +21,18 @@ use super::program::{Program, command, home, raw_pty, wait_for};
 use super::report::{Outcome, Report, histogram, record};
 use super::truth::STOP_BUDGET;
 
-const TIME: &str = "2026-11-22T20:00:00Z";
+pub(crate) const TIME: &str = "2026-11-22T20:00:00Z";
 
 /// A simulated mount behind a pty, and what it is sent, with the time.
-struct Mount {
-    endpoint: String,
+pub(crate) struct Mount {
+    pub(crate) endpoint: String,
     over: Arc<AtomicBool>,
     heard: std::sync::mpsc::Receiver<(Instant, Vec<u8>)>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Mount {
-    fn new() -> Mount {
+    pub(crate) fn new() -> Mount {
         let over = Arc::new(AtomicBool::new(false));
         let ((named, name), (tell, heard)) = (std::sync::mpsc::channel(), std::sync::mpsc::channel());
         let ended = Arc::clone(&over);

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::thread::{self, JoinHandle};
 
+use super::alarm::rehearse;
+use super::clock::Clock;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::State;
 
@@ -20,6 +22,7 @@ impl Keeper {
     /// The system has no more threads.
     pub(super) fn new(
         path: Option<PathBuf>,
+        clock: Clock,
         mut failed: impl FnMut(String) + Send + 'static,
     ) -> std::io::Result<Keeper> {
         let Some(path) = path else { return Ok(Keeper { states: None, thread: None }) };
@@ -30,6 +33,7 @@ impl Keeper {
                 while let Ok(later) = heard.try_recv() {
                     state = later;
                 }
+                rehearse("keeper", clock.now());
                 if let Err(error) = state.save(&path, &mut Files) {
                     failed(error.to_string());
                 }

@@ -6,7 +6,7 @@ use super::Arguments;
 use super::clock::Clock;
 use super::handbox::{self, Handbox};
 use super::projection::Projection;
-use super::record;
+use super::record::{self, Complaint};
 use crate::app::model::Opening;
 use crate::cli::projector::light;
 use crate::cli::settings::Settings;
@@ -39,6 +39,8 @@ pub(super) struct Opened {
     pub(super) state_path: Option<PathBuf>,
     /// The hand controller, to be listened to.
     pub(super) handbox: Handbox,
+    /// What a recording complains of.
+    pub(super) recording: Option<Complaint>,
     /// What should be told once the session runs.
     pub(super) notices: Vec<String>,
 }
@@ -66,8 +68,11 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     // Nobody sits before a service, which may be started before the adapter is plugged in and the bridge has power.
     let patient = arguments.headless && arguments.seconds.is_none();
     let mut opener = opener(&mount, site, ours.utc_at_start, patient)?;
+    let mut recording = None;
     if let Some(path) = &arguments.record {
-        opener = record::recorded(opener, path, &mount.to_string())?;
+        let complaint = Complaint::default();
+        opener = record::recorded(opener, path, &mount.to_string(), &complaint)?;
+        recording = Some(complaint);
     }
     let address = arguments.projector.clone().or(settings.projector).unwrap_or_default();
     let placement = settings.placement.mirrored(instrument.projector.must_mirror());
@@ -102,7 +107,7 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
     let projection = Projection::new(projector, photographs, eye).with_animations(animations);
-    Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, notices })
+    Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, recording, notices })
 }
 
 /// When the session begins: as stated; with a simulated telescope in the middle of the coming night, so that a newcomer at

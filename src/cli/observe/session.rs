@@ -11,6 +11,7 @@ use super::keeper::Keeper;
 use super::line::{Alive, Line, Said};
 use super::opening::Opened;
 use super::projection::{Origin, Projection};
+use super::record::Complaint;
 use super::signals;
 use super::summary::Summary;
 use super::watchdog::Watchdog;
@@ -72,6 +73,8 @@ struct Session {
     keeper: Keeper,
     alive: Alive,
     handbox: Listening,
+    /// Why the recording has ended, when it has.
+    recording: Option<Complaint>,
     watchdog: Watchdog,
     /// When the key of the hand controller was heard whose doing is drawn now.
     key_at: Option<Duration>,
@@ -148,7 +151,7 @@ fn listen(wakes: &Sender<Wake>, clock: Clock) {
 
 impl Session {
     fn new(opened: Opened, wakes: &Sender<Wake>, inbox: Receiver<Wake>) -> Result<Session, Failure> {
-        let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices, handbox } = opened;
+        let Opened { mut opening, clock, ours, pump, mut projection, state_path, notices, handbox, recording } = opened;
         opening.projector = projection.describe();
         let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("projector")));
         let started = projection.start(clock, move |said| {
@@ -157,8 +160,11 @@ impl Session {
             drop(told.send(Wake::Projector(said)));
         });
         started.map_err(Failure::failed)?;
-        let told = wakes.clone();
-        let keeper = Keeper::new(state_path, move |why| drop(told.send(Wake::Notice(why)))).map_err(Failure::failed)?;
+        let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("settings' file")));
+        let keeper = Keeper::new(state_path, clock, move |why| {
+            let _held = &alarm;
+            drop(told.send(Wake::Notice(why)));
+        });
         for notice in notices {
             // The inbox is at hand: it cannot be closed.
             let _ = wakes.send(Wake::Notice(notice));
@@ -171,6 +177,7 @@ impl Session {
         let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("hand controller")));
         let handbox = handbox.listen(clock.start(), move |said| {
             let _held = &alarm;
+            rehearse("handbox", clock.now());
             told.send(Wake::Handbox(said)).is_ok()
         });
         let (told, alarm) = (wakes.clone(), Alarm::new(wakes, Wake::Broke("mount")));
@@ -192,9 +199,10 @@ impl Session {
             ours,
             line: line.map_err(Failure::failed)?,
             projection,
-            keeper,
+            keeper: keeper.map_err(Failure::failed)?,
             alive,
             handbox: handbox.map_err(Failure::failed)?,
+            recording,
             watchdog: Watchdog::new(),
             key_at: None,
             screen: None,
@@ -217,6 +225,9 @@ impl Session {
             self.watchdog.turned(self.lives(now), now);
             self.watchdog.status(&format!("{}, {}", words::link(&self.model).0, words::motion(&self.model)));
             self.read_display(now);
+            if let Some(why) = self.recording.as_ref().and_then(Complaint::take) {
+                self.notice(why);
+            }
             self.wait();
             self.happened(Event::Clocks(self.clock.read()));
             if over(self) {
@@ -247,7 +258,7 @@ impl Session {
         match self.broke {
             None => Ok(()),
             Some(thread) => Err(Failure::Failed(format!(
-                "the part that listens to the {thread} broke (its own words stand above), so the session has ended: look at the \
+                "the part that serves the {thread} broke (its own words stand above), so the session has ended: look at the \
                  telescope, then start again"
             ))),
         }

@@ -31,7 +31,10 @@ impl Framebuffer {
             OpenOptions::new().read(true).write(true).open(path).map_err(|error| refused(error.to_string()))?;
         let screen = ioctl::screen(&device)
             .map_err(|error| refused(format!("it is no framebuffer ({error}); is it the right device?")))?;
-        Framebuffer::with_screen(device, path, &screen, placement)
+        let framebuffer = Framebuffer::with_screen(device, path, &screen, placement)?;
+        // Only now, when it is black. A driver that cannot blank has nothing to wake.
+        let _ = ioctl::unblank(&framebuffer.device);
+        Ok(framebuffer)
     }
 
     /// A device, or in tests a plain file, of known geometry.

@@ -1,16 +1,19 @@
-//! The two calls into the kernel that the framebuffer needs, with the kernel's own structures (`linux/fb.h`).
+//! The three calls into the kernel that the framebuffer needs, with the kernel's own structures (`linux/fb.h`).
 #![expect(unsafe_code, reason = "an ioctl hands the kernel a structure to fill: its layout is checked below")]
 
 use std::ffi::{c_char, c_ulong};
 use std::fs::File;
 use std::io;
 
-use rustix::ioctl::{Getter, Opcode, ioctl};
+use rustix::ioctl::{Getter, IntegerSetter, Opcode, ioctl};
 
 use super::geometry::{BitField, Screen};
 
 const FBIOGET_VSCREENINFO: Opcode = 0x4600;
 const FBIOGET_FSCREENINFO: Opcode = 0x4602;
+const FBIOBLANK: Opcode = 0x4611;
+/// `FB_BLANK_UNBLANK`.
+const UNBLANK: usize = 0;
 
 /// `struct fb_bitfield`.
 #[repr(C)]
@@ -91,4 +94,10 @@ pub(super) fn screen(device: &File) -> io::Result<Screen> {
         line_length: fix.line_length,
         smem_len: fix.smem_len,
     })
+}
+
+/// Wakes a screen that the console has put to sleep. Not every driver can; what is asleep then stays dark.
+pub(super) fn unblank(device: &File) -> io::Result<()> {
+    // SAFETY: this opcode takes a small integer by value.
+    unsafe { Ok(ioctl(device, IntegerSetter::<FBIOBLANK>::new_usize(UNBLANK))?) }
 }
