@@ -14,6 +14,17 @@ impl Stream {
         Stream(Pcg64Mcg::seed_from_u64(seed))
     }
 
+    /// The stream of one part of a seed's work: parts may be done in any order, on any number of threads, with the same result.
+    #[must_use]
+    pub fn part(seed: u64, part: u64) -> Stream {
+        // The finaliser of SplitMix64 (Steele, Lea & Flood 2014), so that neighbouring seeds and parts share nothing.
+        let mut mixed = seed.wrapping_add((part.wrapping_add(1)).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        for (shift, factor) in [(30, 0xbf58_476d_1ce4_e5b9), (27, 0x94d0_49bb_1331_11eb)] {
+            mixed = (mixed ^ (mixed >> shift)).wrapping_mul(factor);
+        }
+        Stream::seeded(mixed ^ (mixed >> 31))
+    }
+
     /// Uniform in 0 (included) to 1 (excluded), all 53 bits.
     pub fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
@@ -45,5 +56,16 @@ mod tests {
         assert_ne!(numbers, draw(8));
         assert!(numbers.iter().all(|u| (0.0..1.0).contains(u)));
         assert!((numbers.iter().sum::<f64>() / 1e4 - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn the_parts_of_neighbouring_seeds_share_no_number() {
+        let parts = (0..40).flat_map(|seed| (0..40).map(move |part| Stream::part(seed, part).uniform().to_bits()));
+        let mut first: Vec<u64> = parts.collect();
+        first.sort_unstable();
+        first.dedup();
+        assert_eq!(first.len(), 1600);
+        let mean = first.iter().map(|bits| f64::from_bits(*bits)).sum::<f64>() / 1600.0;
+        assert!((mean - 0.5).abs() < 4.0 / 12f64.sqrt() / 40.0, "{mean}");
     }
 }

@@ -14,5 +14,9 @@ pub mod model;
 pub mod phase;
 /// Dust, bands and stars: what is lit and by what.
 pub mod scene;
+/// A sphere of even dust, and photons followed through it.
+pub mod sphere;
+/// The scattering table of the thesis.
+pub mod table;
 /// Dust on a grid of voxels.
 pub mod volume;
