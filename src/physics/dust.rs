@@ -10,6 +10,8 @@ pub mod camera;
 pub mod light;
 /// What a model of scattering tells the renderer.
 pub mod model;
+/// Light that has been scattered more than once.
+pub mod multiple;
 /// The law by which a grain turns light aside.
 pub mod phase;
 /// Dust, bands and stars: what is lit and by what.
