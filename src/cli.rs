@@ -20,6 +20,8 @@ pub mod failure;
 pub mod handbox;
 /// The mount without a session.
 pub mod mount;
+/// Reflection nebulae.
+pub mod nebula;
 /// The field session.
 pub mod observe;
 /// What the telescope shows with each eyepiece.
@@ -99,6 +101,8 @@ enum Command {
     Optics(optics::Arguments),
     /// The low Sun through real air: single rays, the index of air
     Sun(sun::Arguments),
+    /// Reflection nebulae: dust lit by stars, made, rendered, flown through
+    Nebula(nebula::Arguments),
     /// What the methods cost and what errors they make, measured here and now
     Report(report::Arguments),
     /// Print the completions of a shell
@@ -142,6 +146,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Projector(arguments)) => projector::run(&arguments),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Sun(arguments)) => sun::run(&arguments),
+        Some(Command::Nebula(arguments)) => nebula::run(&arguments),
         Some(Command::Report(arguments)) => report::run(&arguments),
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();

@@ -4,12 +4,18 @@ use std::fmt;
 
 /// Sequences of pictures as animated PNG files in memory.
 pub mod apng;
+/// Numbers on a grid of three axes.
+pub mod cube;
 /// From linear light to a display's few codes.
 pub mod dither;
 /// A picture between its pixels, half as large, mirrored, turned.
 mod fit;
 /// A small bounded reader of FITS images, and a writer.
 pub mod fits;
+/// Arrays of NumPy.
+pub mod npy;
+/// Raw numbers with a header of words.
+pub mod nrrd;
 /// Pictures as PNG files in memory.
 pub mod png;
 /// Between linear light and 8-bit codes.

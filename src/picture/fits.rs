@@ -2,6 +2,8 @@
 //!
 //! Own code, because a photograph comes from anywhere and everything in it must be bounded before memory is asked for.
 
+/// Volumes: images of three axes.
+pub mod cube;
 /// Writing images of three planes.
 pub mod write;
 

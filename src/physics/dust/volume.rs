@@ -2,6 +2,11 @@
 
 use glam::DVec3;
 
+/// Nebulae made by a recipe.
+pub mod generate;
+/// Perlin's noise.
+pub mod noise;
+
 /// Longest side of a grid, voxels.
 pub const LONGEST_SIDE: usize = 1024;
 
@@ -53,13 +58,7 @@ impl Volume {
     /// # Errors
     /// Sizes, edges or densities that no dust has, with index and value.
     pub fn new(size: [usize; 3], edges: DVec3, density: Vec<f32>) -> Result<Volume, VolumeError> {
-        if size.iter().any(|n| !(1..=LONGEST_SIDE).contains(n)) {
-            return Err(VolumeError::Size(size[0], size[1], size[2]));
-        }
-        if !(edges.is_finite() && edges.min_element() > 0.0) {
-            return Err(VolumeError::Edges(edges.x, edges.y, edges.z));
-        }
-        let needed = size[0] * size[1] * size[2];
+        let needed = Volume::voxels(size, edges)?;
         if density.len() != needed {
             return Err(VolumeError::Count { needed, there: density.len() });
         }
@@ -68,6 +67,20 @@ impl Volume {
             return Err(VolumeError::Density { x, y: rest % size[1], z: rest / size[1], value: density[index] });
         }
         Ok(Volume { size, edges, density })
+    }
+
+    /// How many voxels a volume of this size has, judged before memory is asked for.
+    ///
+    /// # Errors
+    /// Sizes or edges that no volume has.
+    pub fn voxels(size: [usize; 3], edges: DVec3) -> Result<usize, VolumeError> {
+        if size.iter().any(|n| !(1..=LONGEST_SIDE).contains(n)) {
+            return Err(VolumeError::Size(size[0], size[1], size[2]));
+        }
+        if !(edges.is_finite() && edges.min_element() > 0.0) {
+            return Err(VolumeError::Edges(edges.x, edges.y, edges.z));
+        }
+        Ok(size[0] * size[1] * size[2])
     }
 
     /// Voxels along x, y, z.

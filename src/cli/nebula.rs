@@ -1,0 +1,35 @@
+//! `scotopic nebula`: reflection nebulae, dust lit by stars.
+
+use clap::{Args, Subcommand};
+
+use super::Failure;
+
+/// Volumes in files.
+pub mod files;
+/// A nebula out of nothing.
+pub mod generate;
+/// Numbers of three axes on the command line.
+pub mod triple;
+
+/// What is asked of a nebula.
+#[derive(Debug, Clone, Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Clone, Subcommand)]
+enum Command {
+    /// Make a volume of dust: noise in a shape, swept clean around the stars
+    Generate(Box<generate::Arguments>),
+}
+
+/// Answers it.
+///
+/// # Errors
+/// A sentence that says what is wrong and what to do.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Generate(arguments) => generate::run(arguments),
+    }
+}
