@@ -8,6 +8,8 @@
 pub mod bricks;
 /// Where an eye stands, and the ray of each of its pixels.
 pub mod camera;
+/// The renderer to fly with.
+pub mod fast;
 /// Columns of dust between two points, and from the stars.
 pub mod light;
 /// What a model of scattering tells the renderer.

@@ -40,6 +40,8 @@ pub struct Camera {
     right: DVec3,
     up: DVec3,
     lens: Lens,
+    /// Of a perspective, the tangent of half its field.
+    tangent: f64,
 }
 
 impl Camera {
@@ -59,13 +61,20 @@ impl Camera {
             Lens::Perspective { field } => field > 0.0 && field < std::f64::consts::PI,
             Lens::Domemaster { field } => field > 0.0 && field <= std::f64::consts::TAU,
         };
-        sound.then(|| Camera { eye, forward, right, up: right.cross(forward), lens })
+        let tangent = if let Lens::Perspective { field } = lens { (field / 2.0).tan() } else { 0.0 };
+        sound.then(|| Camera { eye, forward, right, up: right.cross(forward), lens, tangent })
     }
 
     /// Where it stands.
     #[must_use]
     pub fn eye(&self) -> DVec3 {
         self.eye
+    }
+
+    /// The direction that all its rays have, if they have one: it is orthographic.
+    #[must_use]
+    pub fn parallel(&self) -> Option<DVec3> {
+        matches!(self.lens, Lens::Orthographic { .. }).then_some(self.forward)
     }
 
     /// The ray of a point of a picture of width x height pixels: x from 0 at its left edge to width, y from 0 at its top to height.
@@ -80,8 +89,8 @@ impl Camera {
                 let across = (self.right * right + self.up * up) * (width / 2.0);
                 Some(Ray { origin: self.eye + across, direction: self.forward })
             }
-            Lens::Perspective { field } => {
-                let across = (self.right * right + self.up * up) * (field / 2.0).tan();
+            Lens::Perspective { .. } => {
+                let across = (self.right * right + self.up * up) * self.tangent;
                 Some(Ray { origin: self.eye, direction: (self.forward + across).normalize() })
             }
             Lens::Domemaster { field } => {

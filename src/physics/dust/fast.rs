@@ -1,0 +1,354 @@
+//! The renderer to fly with: full scattering of a nebula many times a second, from any place, and how far each picture is from the truth.
+//!
+//! ```text
+//! once:          columns of dust from the stars, bricks, the light that has scattered more than once
+//! each frame:    shade each voxel towards the eye -> cast rays through the shaded cells -> add what the grid cannot hold near stars
+//! ```
+//!
+//! What is the same for many samples is done once for all of them: the phase function once a voxel and star, what is empty once for
+//! 8 x 8 rays. The light of a voxel is a source for each unit of extinction, so that a step through dust of any depth is right.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::bricks::Bricks;
+use super::camera::Camera;
+use super::light::lattice::Lattice;
+use super::multiple::Field;
+use super::scene::Scene;
+use super::volume::Volume;
+
+/// Rays through shaded cells.
+mod cast;
+/// Light that has scattered more than once.
+mod glow;
+/// The grid and its margin.
+mod grid;
+/// The kernel.
+mod march;
+/// The light close to a star.
+mod near;
+/// Where dust is.
+mod occupancy;
+/// The same rays in finer steps with nothing from the grid, in a few pixels.
+mod probe;
+/// The light of each voxel towards the eye.
+mod shade;
+
+pub use cast::Work;
+
+use self::glow::Seen;
+use self::grid::Grid;
+use self::march::CELL;
+use self::near::Surroundings;
+use self::occupancy::Occupancy;
+use self::shade::{BANDS, Lamp, Shading, Towards};
+
+/// Widest and highest frame, pixels.
+pub const LARGEST_FRAME: usize = 8192;
+
+/// Why there is no flight.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum FastError {
+    /// More bands than the kernel has lanes.
+    #[error("{0} bands: one flies with 1 to 3; the renderer for pictures has any number")]
+    Bands(usize),
+    /// No pixels, or too many.
+    #[error("a frame of {0} x {1} pixels: each side has 1 to 8192")]
+    Size(usize, usize),
+    /// Steps that are none.
+    #[error("steps of {0} voxels: they are from 0.05 to 8")]
+    Step(f64),
+    /// A share that is none.
+    #[error("rays end where a share of {0} comes through: it is from 0 to less than 1")]
+    Opaque(f64),
+}
+
+/// How much is done for a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quality {
+    /// Steps along rays, voxels.
+    pub step: f64,
+    /// A ray ends where no more than this share of the light behind comes through; 0 never.
+    pub opaque: f64,
+    /// Frames are cast with rays this many pixels apart, and spread over the pixels between.
+    pub coarse: usize,
+    /// Whether empty bricks are passed over.
+    pub skip: bool,
+    /// Pixels in which the error is looked for.
+    pub probes: usize,
+}
+
+impl Quality {
+    /// A ray for each pixel, steps of a voxel.
+    pub const FULL: Quality = Quality { step: 1.0, opaque: 1.0 / 1024.0, coarse: 1, skip: true, probes: 0 };
+    /// A ray for four pixels, steps of a voxel and a half: for keys held down.
+    pub const MOVING: Quality = Quality { step: 1.5, opaque: 1.0 / 256.0, coarse: 2, skip: true, probes: 0 };
+    /// A ray for 16 pixels, steps of two voxels: for slow machines.
+    pub const DRAFT: Quality = Quality { step: 2.0, opaque: 1.0 / 128.0, coarse: 4, skip: true, probes: 0 };
+    /// Half steps, and nothing left out.
+    pub const EVERYTHING: Quality = Quality { step: 0.5, opaque: 0.0, coarse: 1, skip: false, probes: 0 };
+
+    fn check(&self) -> Result<(), FastError> {
+        if !(0.05..=8.0).contains(&self.step) {
+            return Err(FastError::Step(self.step));
+        }
+        if !(0.0..1.0).contains(&self.opaque) {
+            return Err(FastError::Opaque(self.opaque));
+        }
+        Ok(())
+    }
+}
+
+/// What a frame's pixels may be off by, as shares of the mean light of the pixels probed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Believed {
+    /// Mean error.
+    pub mean: f32,
+    /// Worst error.
+    pub worst: f32,
+    /// Pixels probed.
+    pub probes: usize,
+}
+
+/// A picture seen in flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// Radiance, row 0 on top; bands that the scene does not have are 0.
+    pub pixels: Vec<[f32; 3]>,
+    /// The share of the light from behind the dust that comes through each pixel.
+    pub through: Vec<[f32; 3]>,
+    /// No pixel lacks more radiance than this for what was passed over or ended early.
+    pub left_out: f32,
+    /// How far from finer steps without the grid's light; nothing where no pixel was probed.
+    pub believed: Option<Believed>,
+    /// What was done.
+    pub work: Work,
+}
+
+/// A nebula, made ready to fly through.
+pub struct Flyer {
+    grid: Grid,
+    occupancy: Occupancy,
+    everywhere: Occupancy,
+    density: Vec<f32>,
+    lamps: Vec<Lamp>,
+    scene: Scene,
+    field: Option<Field>,
+    /// Radiance of 1 in the flyer's numbers.
+    scale: f64,
+    cells: Vec<[f32; CELL]>,
+    /// How the cells were shaded last: they serve again for the same eye.
+    shaded: Option<(Towards, bool, f32)>,
+    /// The glow as it was seen then.
+    seen: Seen,
+}
+
+impl Flyer {
+    /// Makes a nebula ready: columns of dust from its stars, its bricks. `field` is the light that has scattered more than once.
+    ///
+    /// # Errors
+    /// More than three bands.
+    pub fn new(volume: &Volume, scene: &Scene, field: Option<Field>) -> Result<Flyer, FastError> {
+        let bands = scene.bands();
+        if bands > BANDS {
+            return Err(FastError::Bands(bands));
+        }
+        let grid = Grid::new(volume);
+        let bricks = Bricks::of(volume);
+        let brightest = scene.stars().iter().flat_map(|star| &star.intensity).fold(0.0f64, |a, b| a.max(*b));
+        let brightest = if brightest > 0.0 { brightest } else { 1.0 };
+        // Radiance is intensity over a length squared.
+        let scale = brightest / (grid.unit * grid.unit);
+        let strongest = scene.dust().extinction.iter().fold(0.0f64, |a, b| a.max(*b)) * grid.unit;
+        let negligible = NEGLIGIBLE / (strongest * grid.diagonal()).max(1e-30);
+        let mut flyer = Flyer {
+            occupancy: Occupancy::new(&grid, &bricks, negligible as f32),
+            everywhere: Occupancy::new(&grid, &bricks, -1.0),
+            density: grid.pad(volume.density()),
+            lamps: Vec::new(),
+            scene: scene.clone(),
+            seen: field.as_ref().map(|field| Seen::of(field, &grid)).unwrap_or_default(),
+            field,
+            scale,
+            cells: vec![[0.0; CELL]; grid.len()],
+            grid,
+            shaded: None,
+        };
+        flyer.light(volume, brightest);
+        Ok(flyer)
+    }
+
+    /// Columns from the stars to each voxel.
+    fn light(&mut self, volume: &Volume, brightest: f64) {
+        let (nx, ny) = (volume.size()[0], volume.size()[1]);
+        let spacings = volume.size().into_iter().max().unwrap_or(1).min(FINEST_LATTICE);
+        let lattice = Lattice::new(volume, self.scene.stars(), spacings, &mut |_| {});
+        let albedo = self.scene.dust().albedo;
+        for (index, star) in self.scene.stars().iter().enumerate() {
+            let mut columns = vec![0.0f32; volume.density().len()];
+            columns.par_chunks_mut(nx).enumerate().for_each(|(row, out)| {
+                for (x, column) in out.iter_mut().enumerate() {
+                    let place = volume.centre(x, row % ny, row / ny);
+                    *column = (lattice.column(volume, index, place) / self.grid.unit) as f32;
+                }
+            });
+            let mut power = [0.0f32; BANDS];
+            for (power, intensity) in power.iter_mut().zip(&star.intensity) {
+                *power = (albedo * intensity / brightest) as f32;
+            }
+            self.lamps.push(Lamp { position: star.position / self.grid.unit, power, columns: self.grid.pad(&columns) });
+        }
+    }
+
+    /// Sees the nebula.
+    ///
+    /// # Errors
+    /// A size or a quality that cannot be.
+    pub fn frame(
+        &mut self,
+        camera: &Camera,
+        width: usize,
+        height: usize,
+        quality: &Quality,
+    ) -> Result<Frame, FastError> {
+        quality.check()?;
+        if !(1..=LARGEST_FRAME).contains(&width) || !(1..=LARGEST_FRAME).contains(&height) {
+            return Err(FastError::Size(width, height));
+        }
+        let towards = match camera.parallel() {
+            Some(direction) => Towards::Far(single(-direction)),
+            None => Towards::Eye(single(camera.eye() / self.grid.unit)),
+        };
+        let brightest = self.shade(towards, quality.skip);
+        let coarse = quality.coarse.clamp(1, 8);
+        let (columns, rows) = (width.div_ceil(coarse), height.div_ceil(coarse));
+        let mut pixels = vec![[0.0; BANDS]; columns * rows];
+        let mut through = vec![[1.0; BANDS]; columns * rows];
+        let surroundings = self.surroundings();
+        let casting = cast::Casting {
+            grid: &self.grid,
+            occupancy: if quality.skip { &self.occupancy } else { &self.everywhere },
+            cells: &self.cells,
+            lamps: &self.lamps,
+            surroundings: &surroundings,
+            step: quality.step,
+            opaque: quality.opaque as f32,
+        };
+        let work = cast::cast(&casting, camera, (columns, rows), &mut pixels, &mut through);
+        let scale = self.scale as f32;
+        pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|value| value * scale));
+        let passed_over = if quality.skip {
+            self.occupancy.passed_over() * self.strongest() * self.grid.diagonal() as f32
+        } else {
+            0.0
+        };
+        let left_out = (work.hidden + passed_over) * brightest * scale;
+        let mut frame = Frame { width: columns, height: rows, pixels, through, left_out, believed: None, work };
+        if coarse > 1 {
+            frame = spread(&frame, width, height, coarse);
+        }
+        if quality.probes > 0 {
+            let probing = probe::Probing {
+                grid: &self.grid,
+                lamps: &self.lamps,
+                surroundings: &surroundings,
+                field: self.field.as_ref(),
+                step: FINE * quality.step.min(1.0) / self.grid.per_length().max_element(),
+                scale,
+            };
+            frame.believed = Some(probe::believed(&probing, camera, &frame, quality.probes));
+        }
+        Ok(frame)
+    }
+
+    fn strongest(&self) -> f32 {
+        self.extinction().into_iter().fold(0.0, f32::max)
+    }
+
+    /// Extinction per unit of the grid's length and density.
+    fn extinction(&self) -> [f32; BANDS] {
+        let mut all = [0.0; BANDS];
+        for (k, extinction) in all.iter_mut().zip(&self.scene.dust().extinction) {
+            *k = (extinction * self.grid.unit) as f32;
+        }
+        all
+    }
+
+    fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings {
+            grid: &self.grid,
+            density: &self.density,
+            phase: self.scene.dust().phase,
+            extinction: self.extinction(),
+        }
+    }
+
+    /// Shades the cells unless they serve still. Gives the most light of any.
+    fn shade(&mut self, towards: Towards, skip: bool) -> f32 {
+        if let Some((before, skipped, brightest)) = self.shaded
+            && before == towards
+            && skipped == skip
+        {
+            return brightest;
+        }
+        if let Some(field) = &self.field {
+            self.seen.look(field, &self.grid, towards, (1.0 / self.scale) as f32);
+        }
+        let shading = Shading {
+            grid: &self.grid,
+            occupancy: if skip { &self.occupancy } else { &self.everywhere },
+            density: &self.density,
+            lamps: &self.lamps,
+            asymmetry: self.scene.dust().phase.asymmetry() as f32,
+            extinction: self.extinction(),
+            towards,
+            seen: self.field.as_ref().map(|_| &self.seen),
+        };
+        let brightest = shade::shade(&shading, &mut self.cells);
+        self.shaded = Some((towards, skip, brightest));
+        brightest
+    }
+}
+
+/// Dust of less optical depth than this along the longest way through the box is passed over.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// Steps of a probe, as shares of the frame's.
+const FINE: f64 = 0.25;
+
+/// Most spacings of the lattice of columns.
+const FINEST_LATTICE: usize = 64;
+
+/// A frame of few pixels spread over many, linearly between their centres.
+fn spread(frame: &Frame, width: usize, height: usize, coarse: usize) -> Frame {
+    let along = |at: usize, size: usize| {
+        let place = ((at as f32 + 0.5) / coarse as f32 - 0.5).clamp(0.0, (size - 1) as f32);
+        (place as usize, (place as usize + 1).min(size - 1), place.fract())
+    };
+    let between = |from: &[[f32; BANDS]]| {
+        let mut to = vec![[0.0; BANDS]; width * height];
+        to.par_chunks_mut(width).enumerate().for_each(|(row, to)| {
+            let (top, bottom, v) = along(row, frame.height);
+            let (top, bottom) = (&from[top * frame.width..], &from[bottom * frame.width..]);
+            for (column, to) in to.iter_mut().enumerate() {
+                let (left, right, u) = along(column, frame.width);
+                for (band, to) in to.iter_mut().enumerate() {
+                    let line = |from: &[[f32; BANDS]]| from[left][band] * (1.0 - u) + from[right][band] * u;
+                    *to = line(top) * (1.0 - v) + line(bottom) * v;
+                }
+            }
+        });
+        to
+    };
+    let (pixels, through) = (between(&frame.pixels), between(&frame.through));
+    Frame { width, height, pixels, through, ..*frame }
+}
+
+fn single(v: DVec3) -> [f32; 3] {
+    [v.x as f32, v.y as f32, v.z as f32]
+}
