@@ -14,6 +14,8 @@ pub mod disc;
 pub mod plot;
 /// The refraction of single rays by every method.
 pub mod refraction;
+/// The thesis' figure of how a voxel scatters.
+pub mod scattering_figure;
 /// The light of the sky, against photons followed one by one.
 pub mod skylight;
 /// Extreme air and extreme rays.

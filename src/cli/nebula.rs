@@ -8,6 +8,10 @@ use super::Failure;
 pub mod files;
 /// A nebula out of nothing.
 pub mod generate;
+/// Photons through a sphere of dust.
+pub mod photons;
+/// The scattering table.
+pub mod table;
 /// Numbers of three axes on the command line.
 pub mod triple;
 
@@ -22,6 +26,10 @@ pub struct Arguments {
 enum Command {
     /// Make a volume of dust: noise in a shape, swept clean around the stars
     Generate(Box<generate::Arguments>),
+    /// Follow photons through a sphere of even dust
+    Photons(photons::Arguments),
+    /// Make the scattering table of the thesis: light out of a voxel, by depth and angle
+    Table(Box<table::Arguments>),
 }
 
 /// Answers it.
@@ -31,5 +39,7 @@ enum Command {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Generate(arguments) => generate::run(arguments),
+        Command::Photons(arguments) => photons::run(arguments),
+        Command::Table(arguments) => table::run(arguments),
     }
 }

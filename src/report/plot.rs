@@ -7,7 +7,7 @@ use super::{Measurement, Study};
 /// Why there is no plot.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("the plot could not be drawn: {0}")]
-pub struct PlotError(String);
+pub struct PlotError(pub(super) String);
 
 /// Size of a panel, pixels.
 const PANEL: (u32, u32) = (360, 270);
@@ -19,7 +19,7 @@ const TITLE: u32 = 60;
 const LEAST_ERROR: f64 = 1e-9;
 
 /// Colours that colour-blind readers tell apart. Source: Okabe & Ito (2008), "Color universal design".
-const COLOURS: [RGBColor; 6] = [
+pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),

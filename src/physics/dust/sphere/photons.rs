@@ -7,9 +7,9 @@ use super::{Sphere, SphereError};
 use crate::numerics::streams::Stream;
 
 /// Photons that share a random stream.
-const BATCH: u64 = 256;
+const BATCH: u64 = 64;
 /// Batches of the first round, and of the longest. Between rounds the limit of work is looked at.
-const ROUNDS: (u64, u64) = (64, 8192);
+const ROUNDS: (u64, u64) = (16, 32_768);
 
 /// A mean and its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
