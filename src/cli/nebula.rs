@@ -10,6 +10,8 @@ pub mod files;
 pub mod generate;
 /// Photons through a sphere of dust.
 pub mod photons;
+/// What a volume holds.
+pub mod show;
 /// The scattering table.
 pub mod table;
 /// Numbers of three axes on the command line.
@@ -28,6 +30,8 @@ enum Command {
     Generate(Box<generate::Arguments>),
     /// Follow photons through a sphere of even dust
     Photons(photons::Arguments),
+    /// Say what a volume holds; slices and columns as pictures
+    Show(show::Arguments),
     /// Make the scattering table of the thesis: light out of a voxel, by depth and angle
     Table(Box<table::Arguments>),
 }
@@ -40,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Generate(arguments) => generate::run(arguments),
         Command::Photons(arguments) => photons::run(arguments),
+        Command::Show(arguments) => show::run(arguments),
         Command::Table(arguments) => table::run(arguments),
     }
 }

@@ -8,6 +8,8 @@
 pub mod bricks;
 /// Where an eye stands, and the ray of each of its pixels.
 pub mod camera;
+/// From linear light to the 8 bits of a display.
+pub mod develop;
 /// The renderer to fly with.
 pub mod fast;
 /// Columns of dust between two points, and from the stars.
@@ -16,6 +18,8 @@ pub mod light;
 pub mod model;
 /// Light that has been scattered more than once.
 pub mod multiple;
+/// The way of an eye through a scene.
+pub mod path;
 /// The law by which a grain turns light aside.
 pub mod phase;
 /// Dust, bands and stars: what is lit and by what.

@@ -6,6 +6,10 @@ use glam::DVec3;
 pub mod generate;
 /// Perlin's noise.
 pub mod noise;
+/// Planes: cut at an index, or summed along an axis.
+pub mod slice;
+/// What a volume holds, in numbers.
+pub mod statistics;
 
 /// Longest side of a grid, voxels.
 pub const LONGEST_SIDE: usize = 1024;
