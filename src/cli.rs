@@ -14,6 +14,8 @@ use self::settings::Settings;
 pub mod animations;
 /// The catalogue files that are built into the program.
 pub mod catalogue;
+/// What the observer can see.
+pub mod eye;
 /// How a subcommand ends without doing what was asked.
 pub mod failure;
 /// The mount's own hand controller as an input device.
@@ -90,6 +92,9 @@ enum Command {
     /// Say where something is, or what is in a field
     #[command(subcommand)]
     Sky(sky::Command),
+    /// What the eye can see, what a light costs it, and tone
+    #[command(subcommand)]
+    Eye(eye::Command),
     /// Make the catalogue files that are built into the program
     #[command(subcommand)]
     Catalogue(catalogue::Command),
@@ -141,6 +146,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Handbox(command)) => handbox::run(&command, &Settings::load(None)?),
         Some(Command::Supervise) => supervise::run(),
         Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),
+        Some(Command::Eye(command)) => eye::run(&command, &Settings::load(None)?),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
         Some(Command::Projector(arguments)) => projector::run(&arguments),

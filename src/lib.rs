@@ -11,6 +11,8 @@
 pub mod app;
 /// The command line: parse, wire, run, print.
 pub mod cli;
+/// What the eye can see, what a light costs it, how a scene is toned for it.
+pub mod eye;
 /// Bytes and devices: the mount and the projector, each a pure protocol, a thin adapter and a simulator.
 pub mod hw;
 /// Integrals, roots, steps of differential equations, seeded random streams.

@@ -13,14 +13,15 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("numerics", &["units"]),
     ("picture", &["units"]),
     ("physics", &["units", "numerics", "picture"]),
-    ("report", &["units", "numerics", "picture", "physics"]),
-    ("sky", &["units", "numerics", "physics"]),
-    ("overlay", &["units", "picture", "physics", "sky"]),
+    ("eye", &["units"]),
+    ("report", &["units", "numerics", "picture", "physics", "eye"]),
+    ("sky", &["units", "numerics", "physics", "eye"]),
+    ("overlay", &["units", "picture", "physics", "eye", "sky"]),
     ("hw", &["units", "numerics", "picture", "sky"]),
     ("safety", &["units", "sky"]),
     ("pipeline", &["units", "picture", "sky", "overlay"]),
-    ("app", &["units", "picture", "sky", "overlay", "safety", "pipeline", "hw"]),
-    ("tui", &["units", "picture", "app"]),
+    ("app", &["units", "picture", "eye", "sky", "overlay", "safety", "pipeline", "hw"]),
+    ("tui", &["units", "picture", "eye", "app"]),
 ];
 
 /// Where a module may use only the plain types of another: (user, used, the parts that are plain).

@@ -10,8 +10,6 @@
 pub mod eyepiece;
 /// Telescope, eyepieces and projector together, one eyepiece in use.
 pub mod instrument;
-/// The faintest star that can be seen.
-pub mod limit;
 /// The projector's rectangle in the focal plane.
 pub mod projector;
 /// The tube, its mirrors, and the mounting that carries it.
@@ -19,6 +17,5 @@ pub mod telescope;
 
 pub use eyepiece::Eyepiece;
 pub use instrument::{Instrument, InstrumentError};
-pub use limit::limiting_magnitude;
 pub use projector::{Coverage, ProjectorGeometry};
 pub use telescope::{Diagonal, Mounting, Telescope};

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Eyepiece, ProjectorGeometry, Telescope, eyepiece, limiting_magnitude};
+use super::{Eyepiece, ProjectorGeometry, Telescope, eyepiece};
+use crate::eye::{Viewing, limit};
 use crate::units::{Angle, Magnitude, SurfaceBrightness};
 
 /// All that stands between the sky and the eye. The default is the thesis' own.
@@ -175,14 +176,20 @@ impl Instrument {
         self.projector.pixel_scale(self.telescope.focal_length_mm)
     }
 
+    /// A typical observer's eye of pupil `pupil_mm` behind the eyepiece in use and the beam splitter.
+    #[must_use]
+    pub fn viewing(&self, pupil_mm: f64) -> Viewing {
+        Viewing {
+            transmission: self.telescope.transmission * self.projector.splitter_transmission,
+            pupil_mm,
+            ..Viewing::typical(self.telescope.aperture_mm, self.magnification())
+        }
+    }
+
     /// The faintest star through the eyepiece in use, behind the beam splitter.
     #[must_use]
     pub fn limiting_magnitude(&self, pupil_mm: f64, sky: SurfaceBrightness) -> Magnitude {
-        let behind_splitter = Telescope {
-            transmission: self.telescope.transmission * self.projector.splitter_transmission,
-            ..self.telescope.clone()
-        };
-        limiting_magnitude(&behind_splitter, self.eyepiece(), pupil_mm, sky)
+        limit::through_telescope(&self.viewing(pupil_mm), sky)
     }
 }
 
