@@ -4,6 +4,8 @@
 //! event (key, clocks, mount, projector) -> update(model) -> effects (order, draw, dark, keep, quit)
 //! ```
 
+/// What the overlay does to the eye.
+pub mod adapting;
 /// The message at the top.
 pub mod banner;
 /// What the hand controller's keys mean.

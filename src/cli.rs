@@ -48,6 +48,8 @@ pub mod sky;
 pub mod sun;
 /// The process that stops the mount if the session dies.
 pub mod supervise;
+/// What is worth showing now.
+pub mod tonight;
 
 pub use failure::Failure;
 
@@ -102,6 +104,8 @@ enum Command {
     Overlay(Box<overlay::Arguments>),
     /// Drive the projector by itself: its light, test patterns
     Projector(Box<projector::Arguments>),
+    /// Rank what is worth showing now, by what this telescope and eye can see
+    Tonight(Box<tonight::Arguments>),
     /// Say what the telescope shows with each eyepiece
     Optics(optics::Arguments),
     /// The low Sun through real air: single rays, the index of air
@@ -150,6 +154,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
         Some(Command::Projector(arguments)) => projector::run(&arguments),
+        Some(Command::Tonight(arguments)) => tonight::run(&arguments, &Settings::load(None)?),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Sun(arguments)) => sun::run(&arguments),
         Some(Command::Nebula(arguments)) => nebula::run(&arguments),

@@ -11,6 +11,10 @@ pub mod canvas;
 pub mod colour;
 /// What is in the field, as one picture.
 pub mod compose;
+/// How much light a picture sends into the eye.
+pub mod exposure;
+/// What is told of an object, fact by fact.
+pub mod facts;
 /// The words: information block and eyepiece's line.
 pub mod information;
 /// Names without overlap.

@@ -10,6 +10,8 @@ pub mod aerosol;
 pub mod colour;
 /// The picture of the disc.
 pub mod disc;
+/// The models of the eye, against tables of others.
+pub mod eye;
 /// A study as a plot.
 pub mod plot;
 /// The refraction of single rays by every method.

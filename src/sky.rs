@@ -4,6 +4,8 @@
 pub mod alignment;
 /// From the catalogue's place to the apparent place of date, and back.
 pub mod astrometry;
+/// On which chart of two printed atlases a place is.
+pub mod atlas;
 /// Stars and deep-sky objects: search, and what is in a field.
 pub mod catalogue;
 /// Positions on the sky, each with its frame in its type.
@@ -26,3 +28,5 @@ pub mod site;
 pub mod sun;
 /// UTC, delta T, and the time scales made of them.
 pub mod time;
+/// What is worth showing now.
+pub mod tonight;

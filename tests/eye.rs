@@ -170,3 +170,29 @@ fn what_makes_no_sense_is_asked_wrongly_and_what_is_unknown_fails() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("scotopic eye limit"));
 }
+
+#[test]
+fn tonight_ranks_what_stands_high_enough_and_can_be_seen() {
+    let answer = json(&[
+        "tonight",
+        "--site",
+        "60.17,24.94,30",
+        "--at",
+        "2026-11-22T20:00:00Z",
+        "--sky",
+        "20.8",
+        "--minimum-altitude",
+        "25",
+        "--most",
+        "40",
+        "--json",
+    ]);
+    let rows = answer.as_array().unwrap();
+    assert_eq!(rows.len(), 40);
+    for row in rows {
+        assert!(number(row, "alt_deg") >= 25.0 && number(row, "reserve") > 0.0, "{row}");
+        assert!(number(row, "v_mag") < 15.0 && row["best_eyepiece_mm"].is_number(), "{row}");
+    }
+    let nowhere = scotopic(&["tonight"]);
+    assert_eq!(nowhere.status.code(), Some(2), "{}", String::from_utf8_lossy(&nowhere.stderr));
+}

@@ -111,6 +111,7 @@ fn session() -> Model {
         projector: "none".into(),
         bindings: Default::default(),
         animations: Vec::new(),
+        observer: Default::default(),
     })
 }
 

@@ -1,8 +1,12 @@
 //! What is in the field, and what an object is, in words.
 
+use super::adapting::Observer;
 use super::log::printable;
+use crate::overlay::facts::{self, Fact};
+use crate::sky::atlas;
 use crate::sky::catalogue::{Catalogue, Found, Object};
 use crate::sky::coords::{Equatorial, J2000};
+use crate::sky::optics::Instrument;
 use crate::units::Angle;
 use crate::units::angle::{DegreesMinutesSeconds, HoursMinutesSeconds};
 
@@ -48,29 +52,20 @@ pub fn listed(found: &Found, catalogue: &Catalogue) -> Vec<Listed> {
     objects.chain(stars).collect()
 }
 
-/// What is known of an object: a label and a value a line.
+/// What is known of an object and wanted: a label and a value a line.
 #[must_use]
-pub fn of(object: &Object) -> Vec<(&'static str, String)> {
-    let position = &object.astrometry.position;
-    let mut facts = vec![
-        ("type", format!("{} in {}", object.type_words(), object.constellation)),
-        ("RA J2000", HoursMinutesSeconds(position.ra()).to_string()),
-        ("Dec J2000", DegreesMinutesSeconds(position.dec()).to_string()),
-    ];
-    if let Some(magnitude) = object.magnitude {
-        facts.push(("magnitude", format!("{:.1} {:?}", magnitude.0, object.band)));
-    }
-    if let Some(surface) = object.surface_brightness {
-        facts.push(("surface", format!("{:.1} mag/arcsec² (mean)", surface.0)));
-    }
-    if let Some((major, minor)) = object.axes_arcmin {
-        let angle = object.position_angle.map(|angle| format!(", at {:.0}°", angle.to_degrees())).unwrap_or_default();
-        facts.push(("size", format!("{major:.1}′ × {minor:.1}′{angle}")));
-    }
-    let others: Vec<String> =
-        object.names.iter().filter(|name| **name != object.name).map(|name| printable(name)).collect();
-    if !others.is_empty() {
-        facts.push(("also", others.join(", ")));
-    }
-    facts
+pub fn of(object: &Object, instrument: &Instrument, observer: &Observer) -> Vec<(&'static str, String)> {
+    let place = &object.astrometry.position;
+    let told = facts::of(object, instrument, &observer.eye, &observer.facts);
+    let lines = told.into_iter().flat_map(|told| match told.fact {
+        Fact::Position => vec![
+            ("RA J2000", HoursMinutesSeconds(place.ra()).to_string()),
+            ("Dec J2000", DegreesMinutesSeconds(place.dec()).to_string()),
+        ],
+        Fact::Charts => {
+            vec![("U2000", atlas::uranometria(place).to_string()), ("Millennium", atlas::millennium(place).to_string())]
+        }
+        fact => vec![(fact.label(), printable(&told.text))],
+    });
+    lines.collect()
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::adapting::{Adapting, Observer};
 use super::banner::Banner;
 use super::bindings::Bindings;
 use super::facts::Listed;
@@ -89,6 +90,8 @@ pub struct Opening {
     pub bindings: Bindings,
     /// The animations that can be played.
     pub animations: Vec<Playable>,
+    /// The observer's eye and wishes.
+    pub observer: Observer,
 }
 
 /// Time, as the session has it.
@@ -206,6 +209,8 @@ pub struct Model {
     pub drawn: Option<Scene>,
     /// The picture that is shown.
     pub picture: Option<Arc<Picture>>,
+    /// The observer's eye.
+    pub eye: Adapting,
     /// The message at the top.
     pub banner: Option<Banner>,
     /// What has happened.
@@ -233,12 +238,19 @@ impl Model {
             pairs: Vec::new(),
             instrument: opening.instrument.clone(),
             search: Search::default(),
-            overlay: Overlay { mode: Mode::Over, brightness: 7, photographs: true, facts: true, animation: false },
+            overlay: Overlay {
+                mode: Mode::Over,
+                brightness: opening.observer.brightness(),
+                photographs: true,
+                facts: true,
+                animation: false,
+            },
             menu: None,
             played: Duration::ZERO,
             projector: Projector::Dark("no position yet"),
             drawn: None,
             picture: None,
+            eye: Adapting::default(),
             banner: None,
             log: Log::default(),
             view: View { screen: Screen::Sky, bar: 0, brightness: 6 },

@@ -41,6 +41,7 @@ pub fn update(model: &mut Model, event: Event) -> Vec<Effect> {
             effects
         }
         Event::Shown(picture) => {
+            model.eye.lit(&picture, &model.opening.observer, model.overlay.brightness);
             model.picture = Some(picture);
             model.projector = Projector::Showing;
             Vec::new()

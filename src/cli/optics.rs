@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::overlay::{instrument, sky_brightness};
 use super::settings::Settings;
 use super::{Failure, answer, answer_json};
-use crate::overlay::Eye;
 use crate::sky::optics::Instrument;
 use crate::units::SurfaceBrightness;
 
@@ -59,7 +58,7 @@ struct Row {
 pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     let sky = sky_brightness(arguments.sky_brightness, settings)?;
     let instrument = instrument(arguments.instrument.as_deref().or(settings.instrument.as_deref()), None)?;
-    let answered = derived(&instrument, sky);
+    let answered = derived(&instrument, settings.pupil_mm, sky);
     if arguments.json {
         return answer_json(&answered);
     }
@@ -90,7 +89,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     Ok(())
 }
 
-fn derived(instrument: &Instrument, sky: SurfaceBrightness) -> Answer {
+fn derived(instrument: &Instrument, pupil_mm: f64, sky: SurfaceBrightness) -> Answer {
     let telescope = &instrument.telescope;
     let rows = instrument.eyepieces.iter().enumerate().map(|(index, eyepiece)| {
         let mut with = instrument.clone();
@@ -102,7 +101,7 @@ fn derived(instrument: &Instrument, sky: SurfaceBrightness) -> Answer {
             true_field_arcmin: with.true_field().to_arcminutes(),
             field_stop_known: eyepiece.field_stop_mm.is_some(),
             exit_pupil_mm: with.exit_pupil_mm(),
-            limiting_magnitude: with.limiting_magnitude(Eye::default().pupil_mm, sky).0,
+            limiting_magnitude: with.limiting_magnitude(pupil_mm, sky).0,
             field_covered: coverage.of_field,
             picture_visible: coverage.of_picture,
         }

@@ -119,8 +119,8 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     }
     let utc = arguments.at.unwrap_or_else(now);
     let moment = Moment { utc, delta_t_s: delta_t::default_seconds(utc) };
-    let style = style(arguments)?;
-    let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, ..Eye::default() };
+    let style = Style { facts: settings.facts.clone(), ..style(arguments)? };
+    let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, pupil_mm: settings.pupil_mm };
     let photographs = photographs(arguments.photographs.as_deref().or(settings.photographs.as_deref()))?;
 
     // The field, what is in it, and the picture.
@@ -268,6 +268,7 @@ fn pair(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-fn now() -> Utc {
+/// The instant that the computer's clock shows.
+pub(super) fn now() -> Utc {
     Utc(SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64()))
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Failure, answer, answer_json};
 use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
-use crate::report::{Measurement, Study, aerosol, colour, disc, measure, plot, skylight, stability, table};
+use crate::report::{Measurement, Study, aerosol, colour, disc, eye, measure, plot, skylight, stability, table};
 
 /// Which report.
 #[derive(Debug, Clone, Args)]
@@ -38,6 +38,15 @@ enum Report {
         /// Trace the measured picture pixel by pixel in all its columns, not in four (takes many minutes)
         #[arg(long)]
         all_columns: bool,
+    },
+    /// The models of the eye against tables of independent implementations: the greatest differences
+    Eye {
+        /// Folder of the tables
+        #[arg(long, value_name = "DIR", default_value = "fixtures/reference/eye")]
+        tables: PathBuf,
+        /// Answer as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Extreme air, rays and scenes: what held
     Stability {
@@ -68,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Report::Aerosol(output) => particles(output),
         Report::Sky(output) => sky(output),
         Report::Colour { output, all_columns } => colours(output, *all_columns),
+        Report::Eye { tables, json } => eyes(tables, *json),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -174,11 +184,42 @@ fn write(folder: &Path, name: &str, study: &Study<'_>, measurements: &[Measureme
     Ok(())
 }
 
+fn eyes(tables: &Path, json: bool) -> Result<(), Failure> {
+    let mut read = |name: &str| {
+        let path = tables.join(name);
+        std::fs::read_to_string(&path)
+            .map_err(|error| format!("{} cannot be read ({error}): give the folder with --tables", path.display()))
+    };
+    let agreements = eye::agreements(&mut read).map_err(Failure::failed)?;
+    if json {
+        answer_json(&agreements)?;
+    } else {
+        answer("table                          numbers  worst     of what is asked")?;
+        for one in &agreements {
+            answer(&format!(
+                "{:<30} {:>7}  {:.1e}  {:>5.0} %  {}",
+                one.table,
+                one.compared,
+                one.worst,
+                100.0 * one.share,
+                one.what
+            ))?;
+        }
+    }
+    match agreements.iter().find(|one| one.share > 1.0) {
+        None => Ok(()),
+        Some(wrong) => {
+            Err(Failure::failed(format!("{} differs by {:.1e}: more than is asked", wrong.table, wrong.worst)))
+        }
+    }
+}
+
 fn extremes(json: bool) -> Result<(), Failure> {
     let mut extremes = stability::run();
     extremes.extend(aerosol::extremes());
     extremes.extend(skylight::extremes());
     extremes.extend(disc::extremes());
+    extremes.extend(eye::extremes());
     if json {
         answer_json(&extremes)?;
     } else {

@@ -7,8 +7,10 @@ use std::str::FromStr;
 use etcetera::BaseStrategy;
 use serde::{Deserialize, Deserializer};
 
+use crate::eye::viewing::DARK_PUPIL_MM;
 use crate::hw::mount::address::MountAddress;
 use crate::hw::projector::{Placement, PlacementError, ProjectorAddress};
+use crate::overlay::facts::Choices;
 use crate::safety::Rules;
 use crate::safety::rules::RuleError;
 use crate::sky::site::Site;
@@ -47,6 +49,10 @@ pub struct Settings {
     pub photographs: Option<PathBuf>,
     /// Brightness of the sky's background at the zenith, V magnitudes per square arcsecond: 22 in the desert, 18 in a town.
     pub sky_brightness_mag_arcsec2: f64,
+    /// Diameter of the observer's pupil in the dark, millimetres: 7 when young, 5.5 at seventy.
+    pub pupil_mm: f64,
+    /// Which facts are told of an object.
+    pub facts: Choices,
     /// Where the picture lies on the projector's own pixels.
     pub placement: Placement,
     /// The projector's light.
@@ -66,6 +72,8 @@ impl Default for Settings {
             instrument: None,
             photographs: None,
             sky_brightness_mag_arcsec2: 20.8,
+            pupil_mm: DARK_PUPIL_MM,
+            facts: Choices::default(),
             placement: Placement::default(),
             light: light::Light::default(),
             handbox: handbox::Handbox::default(),
@@ -169,6 +177,13 @@ impl Settings {
         settings.rules.checked().map_err(|error: RuleError| out_of_range(error.to_string()))?;
         settings.placement.checked().map_err(|error: PlacementError| out_of_range(error.to_string()))?;
         settings.handbox.checked().map_err(out_of_range)?;
+        settings.facts.checked().map_err(out_of_range)?;
+        if !(2.0..=9.0).contains(&settings.pupil_mm) {
+            return Err(out_of_range(format!(
+                "pupil_mm = {} is out of range: give 5 (an old eye) to 8 (a young one)",
+                settings.pupil_mm
+            )));
+        }
         if !(10.0..=25.0).contains(&settings.sky_brightness_mag_arcsec2) {
             return Err(out_of_range(format!(
                 "sky_brightness_mag_arcsec2 = {} is out of range: give 16 (a city) to 22.2 (the darkest sky)",
@@ -257,6 +272,9 @@ mod tests {
             ("mount = \"usb\"", "'usb' is not a mount"),
             ("projector = \"beamer\"", "'beamer' is no projector"),
             ("sky_brightness_mag_arcsec2 = 3", "16 (a city)"),
+            ("pupil_mm = 70", "8 (a young one)"),
+            ("[facts]\noff = [\"chart\"]", "`charts`"),
+            ("[facts.types.planet]\noff = []", "planetary nebula"),
             ("[rules]\nsun_cone_deg = -1", "rule sun_cone_deg = -1 is out of range"),
             ("[placement]\nscale = 99", "scale = 99 is out of range"),
             ("[placement]\nscale = \"big\"", "scale = \"big\" is not understood"),

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{Failure, answer, answer_json};
 use crate::physics::refraction::Air;
 use crate::sky::astrometry::{Astrometry, Reduction};
+use crate::sky::atlas;
 use crate::sky::catalogue::{Band, Catalogue, Object, constellation};
 use crate::sky::coords::{Equatorial, J2000};
 use crate::sky::horizon::{self, Horizon};
@@ -172,6 +173,8 @@ fn page(shown: &Shown<'_>, object: Option<&Object>, moment: &Moment) -> String {
         line("also", shown.names[1..].join(", "));
     }
     line("J2000", place(shown.ra_j2000_deg, shown.dec_j2000_deg));
+    let at = Equatorial::new(Angle::degrees(shown.ra_j2000_deg), Angle::degrees(shown.dec_j2000_deg));
+    line("charts", format!("Uranometria 2000.0 {}, Millennium {}", atlas::uranometria(&at), atlas::millennium(&at)));
     line("of date", place(shown.ra_apparent_deg, shown.dec_apparent_deg));
     if let (Some(alt), Some(seen), Some(az)) = (shown.alt_deg, shown.alt_refracted_deg, shown.az_deg) {
         line("altitude, azimuth", format!("{alt:.3}° ({seen:.3}° with refraction), {az:.3}° from north through east"));

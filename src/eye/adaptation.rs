@@ -40,6 +40,13 @@ impl Adaptation {
         Adaptation { bleached: bleach::after(self.bleached, trolands, seconds) }
     }
 
+    /// The same for a light of mixed colours: its scotopic luminance, and the photopic one that sets the pupil.
+    #[must_use]
+    pub fn after_scotopic(self, scotopic_cd_m2: f64, photopic_cd_m2: f64, seconds: f64) -> Adaptation {
+        let trolands = scotopic_trolands(scotopic_cd_m2, lamp::pupil_mm(photopic_cd_m2));
+        Adaptation { bleached: bleach::after(self.bleached, trolands, seconds) }
+    }
+
     /// By how many powers of ten the threshold stands above a dark-adapted eye's once the light is off.
     #[must_use]
     pub fn elevation_dex(&self) -> f64 {

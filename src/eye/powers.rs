@@ -6,6 +6,9 @@ use crate::units::SurfaceBrightness;
 /// Powers whose reserve comes so near to the greatest, in powers of ten, show an object as well.
 const FLAT_DEX: f64 = 0.1;
 
+/// From this reserve on an object is very easy, and more contrast is no reason for another power.
+const ENOUGH_DEX: f64 = 1.0;
+
 /// So many times an object's width the field should show.
 const ROOM: f64 = 1.25;
 
@@ -50,7 +53,7 @@ pub fn soft_from() -> f64 {
 
 /// Finds the useful magnifications of an object and the best of the eyepieces.
 ///
-/// Useful are those within 0.1 dex of the greatest reserve, above the threshold, with an exit pupil no wider than the eye's
+/// Useful are those within 0.1 dex of the greatest reserve (or of 1, where it is greater), above the threshold, with an exit pupil no wider than the eye's
 /// and no narrower than 0.5 mm, whose field is 1.25 times as wide as the object. (With what the mean of a galaxy says; its core
 /// bears more.) Of the useful eyepieces the best is the one of the greatest reserve among those under [`soft_from`]; if all are
 /// above, the lowest.
@@ -68,8 +71,8 @@ pub fn useful(object: &Patch, viewing: &Viewing, sky: SurfaceBrightness, model: 
     let at = |step: u32| lowest * (highest / lowest).powf(f64::from(step) / f64::from(STEPS));
     let samples: Vec<(f64, f64)> = (0..=STEPS).map(|step| (at(step), reserve(at(step)))).collect();
     let greatest = samples.iter().map(|sample| sample.1).fold(f64::NEG_INFINITY, f64::max);
-    let good = |reserve: f64| reserve > 0.0 && reserve >= greatest - FLAT_DEX;
-    let mut good_powers = samples.iter().filter(|sample| good(sample.1)).map(|sample| sample.0);
+    let good = |reserve: f64, greatest: f64| reserve > 0.0 && reserve >= greatest.min(ENOUGH_DEX) - FLAT_DEX;
+    let mut good_powers = samples.iter().filter(|sample| good(sample.1, greatest)).map(|sample| sample.0);
     let range = good_powers.next().map(|first| (first, good_powers.next_back().unwrap_or(first)));
 
     // Hold the eyepieces against it: first those that show the whole object, else all.
@@ -82,8 +85,7 @@ pub fn useful(object: &Patch, viewing: &Viewing, sky: SurfaceBrightness, model: 
         .map(|(index, choice)| (index, choice.magnification, reserve(choice.magnification)))
         .collect();
     let peak = candidates.iter().map(|candidate| candidate.2).fold(f64::NEG_INFINITY, f64::max);
-    let near_peak = |candidate: &&(usize, f64, f64)| candidate.2 > 0.0 && candidate.2 >= peak - FLAT_DEX;
-    let useful: Vec<&(usize, f64, f64)> = candidates.iter().filter(near_peak).collect();
+    let useful: Vec<&(usize, f64, f64)> = candidates.iter().filter(|candidate| good(candidate.2, peak)).collect();
     let calm = useful.iter().filter(|candidate| candidate.1 <= soft_from()).max_by(|a, b| a.2.total_cmp(&b.2));
     let lowest_power = useful.iter().min_by(|a, b| a.1.total_cmp(&b.1));
     let best = calm.or(lowest_power).copied().or(candidates.iter().max_by(|a, b| a.2.total_cmp(&b.2)));
@@ -119,10 +121,21 @@ mod tests {
         let m57 = Patch { v_mag: 8.8, major_arcmin: 1.4, minor_arcmin: 1.0 };
         let found = powers(&m57, 18.5, Model::Blackwell);
         assert_eq!((found.best, found.overflows), (Some(1), false));
-        assert_eq!(found.useful, [0, 1, 2, 3]);
+        // At 500 times 0.97: still very easy, and the field is wide enough.
+        assert_eq!(found.useful, [0, 1, 2, 3, 4]);
         assert!((found.best_reserve.unwrap() - 1.182).abs() < 1e-3);
         let (low, high) = found.range.unwrap();
-        assert!(low < 78.0 && high > 200.0 && high < 500.0, "{low} {high}");
+        assert!(low < 78.0 && high > 500.0, "{low} {high}");
+    }
+
+    #[test]
+    fn a_faint_disc_is_best_within_a_tenth_of_its_greatest_reserve() {
+        // The Owl under 20.5, Blackwell: 0.671 at 78, 0.427 at 200, 0.234 at 300 times.
+        let m97 = Patch { v_mag: 9.9, major_arcmin: 3.4, minor_arcmin: 3.3 };
+        let found = powers(&m97, 20.5, Model::Blackwell);
+        assert_eq!((found.best, found.useful), (Some(0), vec![0, 1]));
+        let (low, high) = found.range.unwrap();
+        assert!(low < 78.0 && (104.0..200.0).contains(&high), "{low} {high}");
     }
 
     #[test]

@@ -228,7 +228,8 @@ impl Composer {
         visible: &Region,
     ) -> Vec<Area> {
         let em_px = layout::text_px(field, style);
-        let words = target.map_or_else(|| information::about_nothing(field), |target| information::about(target, eye));
+        let about = |target| information::about(target, field, eye, &style.facts);
+        let words = target.map_or_else(|| information::about_nothing(field), about);
         let mut lines: Vec<Line> = layout::block(&mut self.scribe, &words, em_px, field, visible);
         let below = information::eyepiece(field, eye);
         lines.extend(layout::bottom_line(&mut self.scribe, &below, em_px, field, visible));

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::facts::Choices;
 use crate::units::SurfaceBrightness;
 
 /// Where the picture stands.
@@ -91,6 +92,8 @@ pub struct Style {
     pub labels: bool,
     /// Whether the information block and the eyepiece's line are written.
     pub information: bool,
+    /// Which facts stand in the information block.
+    pub facts: Choices,
     /// Whether the circle of the field stop is drawn.
     pub field_circle: bool,
     /// Whether the uncertainty of the position is drawn.
@@ -110,6 +113,7 @@ impl Default for Style {
             text_arcmin: 36.0,
             labels: true,
             information: true,
+            facts: Choices::default(),
             field_circle: true,
             uncertainty: true,
         }

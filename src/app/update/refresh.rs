@@ -86,6 +86,7 @@ fn darkened(model: &mut Model, why: &'static str) -> Vec<Effect> {
     model.projector = Projector::Dark(why);
     model.drawn = None;
     model.picture = None;
+    model.eye.light = None;
     if lit { vec![Effect::Dark] } else { Vec::new() }
 }
 

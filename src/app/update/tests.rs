@@ -46,6 +46,7 @@ fn opening() -> Opening {
         projector: "none".into(),
         bindings: Default::default(),
         animations: Vec::new(),
+        observer: Default::default(),
     }
 }
 

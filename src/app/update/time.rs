@@ -23,6 +23,7 @@ pub(super) fn passed(model: &mut Model, clocks: Clocks) -> Vec<Effect> {
         model.menu = None;
     }
     let Some(before) = before else { return Vec::new() };
+    model.eye.pass(clocks.awake.saturating_sub(before.awake));
     // An animation stands still while nothing is drawn: the mount moves.
     if model.drawn.is_some() && model.playing().is_some() {
         model.played += clocks.awake.saturating_sub(before.awake);
@@ -61,6 +62,7 @@ fn forget(model: &mut Model, why: &str) -> Vec<Effect> {
     model.turns.lose_sight();
     model.drawn = None;
     model.picture = None;
+    model.eye.light = None;
     model.field.clear();
     model.projector = Projector::Dark("everything is being asked anew");
     model.say(

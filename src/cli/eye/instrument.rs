@@ -8,7 +8,7 @@ use crate::cli::Failure;
 use crate::cli::overlay::{instrument, within};
 use crate::cli::settings::Settings;
 use crate::eye::Viewing;
-use crate::eye::viewing::{CRUMEY_TRANSMISSION, DARK_PUPIL_MM};
+use crate::eye::viewing::CRUMEY_TRANSMISSION;
 use crate::units::SurfaceBrightness;
 
 /// The flags of `eye contrast` and `eye limit`.
@@ -29,7 +29,7 @@ pub struct Given {
     /// Magnification, in place of an eyepiece
     #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
     pub magnification: Option<f64>,
-    /// Diameter of the eye's pupil in the dark, millimetres: 7 when young, 6.2 at fifty, 5.5 at seventy [default: 7]
+    /// Diameter of the eye's pupil in the dark, millimetres: 7 when young, 6.2 at fifty, 5.5 at seventy [default: the settings', else 7]
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub pupil_mm: Option<f64>,
     /// Share of the light that reaches the eye [default: the telescope's; with --aperture-mm 1/1.33 = 0.752, as Crumey]
@@ -56,7 +56,7 @@ impl Given {
             aperture_mm: within("--aperture-mm", aperture_mm, 1.0, 100_000.0)?,
             magnification: within("--magnification", magnification, 0.1, 100_000.0)?,
             transmission,
-            pupil_mm: within("--pupil-mm", self.pupil_mm.unwrap_or(DARK_PUPIL_MM), 0.5, 10.0)?,
+            pupil_mm: within("--pupil-mm", self.pupil_mm.unwrap_or(settings.pupil_mm), 0.5, 10.0)?,
             field_factor: within("--field-factor", field_factor, 0.1, 1000.0)?,
         })
     }

@@ -7,6 +7,7 @@ use super::clock::Clock;
 use super::handbox::{self, Handbox};
 use super::projection::Projection;
 use super::record::{self, Complaint};
+use crate::app::adapting::Observer;
 use crate::app::model::Opening;
 use crate::cli::projector::light;
 use crate::cli::settings::Settings;
@@ -78,7 +79,7 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let placement = settings.placement.mirrored(instrument.projector.must_mirror());
     let projector = projector::open(&address, placement).map_err(Failure::failed)?;
     let projector = light::lit(projector, &settings.light)?;
-    let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), ..Eye::default() };
+    let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), pupil_mm: settings.pupil_mm };
 
     let state_path = if simulated { None } else { state::default_path() };
     let (state, notice) = state_path.as_ref().map_or((State::default(), None), |path| State::load(path, &mut Files));
@@ -104,9 +105,17 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         projector: address.to_string(),
         bindings: handbox.bindings.clone(),
         animations: animations.iter().map(|animation| animation.playable.clone()).collect(),
+        observer: Observer {
+            eye,
+            facts: settings.facts.clone(),
+            full_cd_m2: settings.light.luminance_cd_m2,
+            lamps_dim: settings.light.module.is_some(),
+            white: !photographs.is_empty() || !animations.is_empty(),
+        },
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
-    let projection = Projection::new(projector, photographs, eye).with_animations(animations);
+    let projection =
+        Projection::new(projector, photographs, eye).with_animations(animations).with_facts(settings.facts);
     Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, recording, notices })
 }
 

@@ -9,6 +9,7 @@ use crate::app::scene::Scene;
 use crate::hw::projector::output::{Output, Stamp, Told};
 use crate::hw::projector::{Dimmed, Nowhere, Projector};
 use crate::overlay::animation::Animation;
+use crate::overlay::facts::Choices;
 use crate::overlay::{Composer, Eye, Photograph, Style};
 use crate::picture::Picture;
 use crate::pipeline::{self, View};
@@ -54,6 +55,7 @@ pub(super) struct Projection {
     photographs: Vec<Photograph>,
     animations: Vec<Animation>,
     eye: Eye,
+    facts: Choices,
     /// Pictures that reached the projector.
     pub(super) frames: u64,
     /// From the instant that the position was predicted for to the instant that the picture was there.
@@ -81,6 +83,7 @@ impl Projection {
             photographs,
             animations: Vec::new(),
             eye,
+            facts: Choices::default(),
             frames: 0,
             ages: Ages::default(),
             samples: Ages::default(),
@@ -96,6 +99,12 @@ impl Projection {
     /// What can be played, in the order in which scenes number it.
     pub(super) fn with_animations(mut self, animations: Vec<Animation>) -> Projection {
         self.animations = animations;
+        self
+    }
+
+    /// Which facts are told of an object.
+    pub(super) fn with_facts(mut self, facts: Choices) -> Projection {
+        self.facts = facts;
         self
     }
 
@@ -132,6 +141,7 @@ impl Projection {
                 mode: scene.mode,
                 gain: self.gain,
                 information: scene.facts,
+                facts: self.facts.clone(),
                 labels: scene.facts,
                 ..Style::default()
             },

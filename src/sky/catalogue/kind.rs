@@ -79,6 +79,17 @@ impl Kind {
         TABLE.iter().find(|row| row.0 == self).map_or("Other", |row| row.1)
     }
 
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Kind> {
+        TABLE.iter().map(|row| row.0)
+    }
+
+    /// From its plain words.
+    #[must_use]
+    pub fn from_words(words: &str) -> Option<Kind> {
+        TABLE.iter().find(|row| row.2 == words).map(|row| row.0)
+    }
+
     /// In plain words: "planetary nebula".
     #[must_use]
     pub fn words(self) -> &'static str {

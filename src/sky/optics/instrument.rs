@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Eyepiece, ProjectorGeometry, Telescope, eyepiece};
+use crate::eye::powers::Choice;
 use crate::eye::{Viewing, limit};
 use crate::units::{Angle, Magnitude, SurfaceBrightness};
 
@@ -184,6 +185,16 @@ impl Instrument {
             pupil_mm,
             ..Viewing::typical(self.telescope.aperture_mm, self.magnification())
         }
+    }
+
+    /// The eyepieces in the case as the choice of a magnification needs them, in their order.
+    #[must_use]
+    pub fn choices(&self) -> Vec<Choice> {
+        let choice = |eyepiece: &Eyepiece| Choice {
+            magnification: eyepiece.magnification(&self.telescope),
+            true_field_arcmin: eyepiece.true_field(&self.telescope).to_arcminutes(),
+        };
+        self.eyepieces.iter().map(choice).collect()
     }
 
     /// The faintest star through the eyepiece in use, behind the beam splitter.

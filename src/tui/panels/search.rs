@@ -49,7 +49,8 @@ pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Re
     let mut lines = Vec::new();
     if let Some(object) = &search.meant {
         lines.push(heading(theme, printable(&object.name)));
-        lines.extend(facts::of(object).iter().map(|(label, value)| fact(theme, label, value)));
+        let known = facts::of(object, &model.instrument, &model.opening.observer);
+        lines.extend(known.iter().map(|(label, value)| fact(theme, label, value)));
     }
     frame.render_widget(Paragraph::new(lines).style(theme.text(Level::Normal)).wrap(Wrap { trim: false }), meant);
 }

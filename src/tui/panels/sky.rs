@@ -18,7 +18,7 @@ pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Re
     let texts = if area.width >= 120 { area.width * 2 / 5 } else { TEXTS.min(area.width / 2) };
     let [left, right] = Layout::horizontal([Constraint::Length(texts), Constraint::Min(0)]).areas(area);
     draw_texts(model, theme, frame, left);
-    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(3)]).areas(right);
+    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(5)]).areas(right);
     draw_picture(model, theme, frame, picture);
     draw_below(model, theme, frame, below);
 }
@@ -33,7 +33,7 @@ fn draw_texts(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
         }
         Some(target) => {
             lines.push(heading(theme, cut(&crate::app::log::printable(&target.name), width.saturating_sub(2))));
-            for (label, value) in facts::of(target) {
+            for (label, value) in facts::of(target, &model.instrument, &model.opening.observer) {
                 lines.push(fact(theme, label, &cut(&value, width.saturating_sub(14))));
             }
         }
@@ -76,7 +76,7 @@ fn draw_picture(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect)
     frame.render_widget(text.style(theme.text(Level::Dim)), middle);
 }
 
-/// The eyepiece and what the projector does.
+/// The eyepiece, what the projector does, and what that does to the eye.
 fn draw_below(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     let instrument = &model.instrument;
     let eyepiece = format!(
@@ -99,10 +99,13 @@ fn draw_below(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
         place = format!("{place}, nudged {nudge:.1}′");
     }
     let overlay = format!(" overlay {}, brightness {}/10, {shown}", model.overlay.mode, model.overlay.brightness);
-    let lines = vec![
+    let observer = &model.opening.observer;
+    let background = instrument.viewing(observer.eye.pupil_mm).background_cd_m2(observer.eye.sky);
+    let mut lines = vec![
         Line::styled(eyepiece, theme.text(Level::Normal)),
         Line::styled(overlay, theme.text(Level::Dim)),
         Line::styled(place, theme.text(Level::Dim)),
     ];
+    lines.extend(model.eye.words(background).map(|words| Line::styled(format!(" {words}"), theme.text(Level::Dim))));
     frame.render_widget(Paragraph::new(lines).style(theme.text(Level::Normal)), area);
 }
