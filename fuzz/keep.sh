@@ -7,7 +7,8 @@ cd "$(dirname -- "$0")"
 target=${1:?which target? $(ls fuzz_targets)}
 small=$(mktemp -d)
 trap 'rm -rf -- "$small"' EXIT
-cargo +nightly fuzz run "$target" "$small" -- -merge=1 "corpus/$target" 2>"$small.log" || { tail "$small.log"; exit 1; }
+# cargo-fuzz puts its own folder last, and libFuzzer merges into the first.
+cargo +nightly fuzz run "$target" "corpus/$target" -- -merge=1 "$small" 2>"$small.log" || { tail "$small.log"; exit 1; }
 rm -f -- "$small.log"
 kept=../fixtures/fuzz/$target.hex
 {

@@ -25,6 +25,8 @@ mod faults;
 mod field;
 #[path = "hil/inventory.rs"]
 mod inventory;
+#[path = "hil/light.rs"]
+mod light;
 #[path = "hil/night.rs"]
 mod night;
 #[path = "hil/program.rs"]
@@ -78,6 +80,7 @@ const SECTIONS: &[Section] = &[
         field::by_hand_controller(rig, report);
         field::stop_key(rig, report);
     }),
+    ("light", |_, report| light::read_back(report)),
     ("exits", |_, report| exits::every_way(report)),
 ];
 

@@ -17,7 +17,7 @@ const FIRST_ERROR: f64 = 0.3;
 const DOUBT: f64 = 1.0 / 4.0;
 
 /// Spheres that are computed together: neighbours in size.
-const TOGETHER: usize = 4;
+const TOGETHER: usize = 8;
 
 /// Number of particles against radius, normalised to one particle over all radii.
 ///
