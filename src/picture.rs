@@ -8,6 +8,8 @@ pub mod apng;
 pub mod cube;
 /// From linear light to a display's few codes.
 pub mod dither;
+/// Linear light as OpenEXR.
+pub mod exr;
 /// A picture between its pixels, half as large, mirrored, turned.
 mod fit;
 /// A small bounded reader of FITS images, and a writer.

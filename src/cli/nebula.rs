@@ -4,12 +4,20 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
+/// Where the eye stands.
+pub mod eye;
 /// Volumes in files.
 pub mod files;
 /// A nebula out of nothing.
 pub mod generate;
+/// Pictures in files.
+pub mod out;
 /// Photons through a sphere of dust.
 pub mod photons;
+/// The accurate picture.
+pub mod render;
+/// What is lit and by what.
+pub mod scene;
 /// What a volume holds.
 pub mod show;
 /// The scattering table.
@@ -30,6 +38,8 @@ enum Command {
     Generate(Box<generate::Arguments>),
     /// Follow photons through a sphere of even dust
     Photons(photons::Arguments),
+    /// Make a picture: as right as is asked, and it says how right it is
+    Render(Box<render::Arguments>),
     /// Say what a volume holds; slices and columns as pictures
     Show(show::Arguments),
     /// Make the scattering table of the thesis: light out of a voxel, by depth and angle
@@ -44,6 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Generate(arguments) => generate::run(arguments),
         Command::Photons(arguments) => photons::run(arguments),
+        Command::Render(arguments) => render::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Table(arguments) => table::run(arguments),
     }

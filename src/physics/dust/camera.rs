@@ -107,6 +107,31 @@ impl Camera {
     }
 }
 
+impl Camera {
+    /// Where a point is drawn: x and y as [`Camera::ray`] takes them, also beside the picture; nothing behind the eye or outside the circle.
+    #[must_use]
+    pub fn place(&self, point: DVec3, width: usize, height: usize) -> Option<(f64, f64)> {
+        let (w, h) = (width as f64, height as f64);
+        let way = point - self.eye;
+        let (right, up, ahead) = (way.dot(self.right), way.dot(self.up), way.dot(self.forward));
+        let (right, up) = match self.lens {
+            Lens::Orthographic { width } => (right * 2.0 / width, up * 2.0 / width),
+            Lens::Perspective { field } => {
+                let scale = ahead * (field / 2.0).tan();
+                (ahead > 0.0).then_some((right / scale, up / scale))?
+            }
+            Lens::Domemaster { field } => {
+                let across = right.hypot(up);
+                let radius = across.atan2(ahead) / (field / 2.0);
+                let scale = if across > 0.0 { radius / across * w.min(h) / w } else { 0.0 };
+                (radius <= 1.0 && way != DVec3::ZERO).then_some((right * scale, up * scale))?
+            }
+        };
+        let place = ((right + 1.0) * w / 2.0, (h - up * w) / 2.0);
+        (place.0.is_finite() && place.1.is_finite()).then_some(place)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,5 +169,17 @@ mod tests {
         let camera = Camera::looking(DVec3::ZERO, DVec3::Y, DVec3::Y, Lens::Orthographic { width: 1.0 }).unwrap();
         assert!(camera.ray(0.0, 0.0, 2, 2).unwrap().origin.is_finite());
         assert!(Camera::looking(DVec3::ZERO, DVec3::ZERO, DVec3::Y, Lens::Orthographic { width: 1.0 }).is_none());
+    }
+
+    #[test]
+    fn a_point_is_drawn_where_its_ray_goes() {
+        for lens in
+            [Lens::Orthographic { width: 3.0 }, Lens::Perspective { field: 1.2 }, Lens::Domemaster { field: 3.5 }]
+        {
+            let camera = Camera::looking(DVec3::new(0.3, -2.0, 1.0), DVec3::X, DVec3::Y, lens).unwrap();
+            let ray = camera.ray(27.3, 11.8, 64, 40).unwrap();
+            let (x, y) = camera.place(ray.origin + ray.direction * 2.5, 64, 40).unwrap();
+            assert!((x - 27.3).hypot(y - 11.8) < 1e-9, "{lens:?}: {x} {y}");
+        }
     }
 }

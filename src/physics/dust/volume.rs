@@ -99,6 +99,12 @@ impl Volume {
         self.edges
     }
 
+    /// Edges of one voxel.
+    #[must_use]
+    pub fn voxel(&self) -> DVec3 {
+        self.edges / DVec3::new(self.size[0] as f64, self.size[1] as f64, self.size[2] as f64)
+    }
+
     /// All densities, x fastest, then y, then z.
     #[must_use]
     pub fn density(&self) -> &[f32] {

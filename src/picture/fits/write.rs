@@ -1,4 +1,4 @@
-//! Writing an image as FITS: f32 values in three planes, so that linear light is kept to its last digit.
+//! Writing an image as FITS: f32 values in planes, so that linear light is kept to its last digit.
 
 use super::BLOCK;
 
@@ -11,19 +11,36 @@ pub enum Value<'a> {
     Text(&'a str),
 }
 
-/// The bytes of a FITS file. Pixels come row by row from the top; FITS counts rows from the bottom, and so they are stored.
+/// The bytes of a FITS file of three planes. Pixels come row by row from the top; FITS counts rows from the bottom, and so they are stored.
 /// Keywords longer than eight letters, and what is not ASCII, are cut out.
 #[must_use]
 pub fn three_planes(width: usize, pixels: &[[f32; 3]], cards: &[(&str, Value<'_>)]) -> Vec<u8> {
-    let height = pixels.len().checked_div(width).unwrap_or(0);
-    let mut file = Vec::with_capacity(2 * BLOCK + pixels.len() * 12);
+    file(width, pixels.len(), 3, |plane, pixel| pixels[pixel][plane], cards)
+}
+
+/// The same for planes that lie one after the other, all of one size; any number of them.
+#[must_use]
+pub fn planes(width: usize, planes: &[Vec<f32>], cards: &[(&str, Value<'_>)]) -> Vec<u8> {
+    let pixels = planes.iter().map(Vec::len).min().unwrap_or(0);
+    file(width, pixels, planes.len(), |plane, pixel| planes[plane][pixel], cards)
+}
+
+fn file(
+    width: usize,
+    pixels: usize,
+    planes: usize,
+    value: impl Fn(usize, usize) -> f32,
+    cards: &[(&str, Value<'_>)],
+) -> Vec<u8> {
+    let height = pixels.checked_div(width).unwrap_or(0);
+    let mut file = Vec::with_capacity(2 * BLOCK + pixels * planes * 4);
     let mut card = |text: String| {
         let ascii: String = text.chars().filter(|c| c.is_ascii_graphic() || *c == ' ').take(80).collect();
         file.extend_from_slice(format!("{ascii:<80}").as_bytes());
     };
     card("SIMPLE  =                    T".to_owned());
     for (key, value) in
-        [("BITPIX", -32), ("NAXIS", 3), ("NAXIS1", width as i64), ("NAXIS2", height as i64), ("NAXIS3", 3)]
+        [("BITPIX", -32), ("NAXIS", 3), ("NAXIS1", width as i64), ("NAXIS2", height as i64), ("NAXIS3", planes as i64)]
     {
         card(format!("{key:<8}= {value:>20}"));
     }
@@ -39,10 +56,10 @@ pub fn three_planes(width: usize, pixels: &[[f32; 3]], cards: &[(&str, Value<'_>
     }
     card("END".to_owned());
     file.resize(file.len().next_multiple_of(BLOCK), b' ');
-    for plane in 0..3 {
-        for row in pixels.chunks_exact(width.max(1)).rev() {
-            for pixel in row {
-                file.extend_from_slice(&pixel[plane].to_be_bytes());
+    for plane in 0..planes {
+        for row in (0..height).rev() {
+            for pixel in row * width..(row + 1) * width {
+                file.extend_from_slice(&value(plane, pixel).to_be_bytes());
             }
         }
     }
