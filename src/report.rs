@@ -12,6 +12,8 @@ pub mod colour;
 pub mod disc;
 /// The models of the eye, against tables of others.
 pub mod eye;
+/// Dust lit by a star, against pictures of another program.
+pub mod nebula;
 /// A study as a plot.
 pub mod plot;
 /// The refraction of single rays by every method.

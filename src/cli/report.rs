@@ -9,7 +9,9 @@ use serde_json::json;
 use super::{Failure, answer, answer_json};
 use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
-use crate::report::{Measurement, Study, aerosol, colour, disc, eye, measure, plot, skylight, stability, table};
+use crate::report::{
+    Measurement, Study, aerosol, colour, disc, eye, measure, nebula, plot, skylight, stability, table,
+};
 
 /// Which report.
 #[derive(Debug, Clone, Args)]
@@ -17,6 +19,7 @@ use crate::report::{Measurement, Study, aerosol, colour, disc, eye, measure, plo
     scotopic report refraction                   the table\n  \
     scotopic report refraction --out report      and report/refraction.svg, report/refraction.json\n  \
     scotopic report colour                       the error of few wavelengths, and the times of the picture\n  \
+    scotopic report nebula                       dust lit by a star, against pictures of another program\n  \
     scotopic report stability                    what held, under extreme air and rays")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -48,6 +51,8 @@ enum Report {
         #[arg(long)]
         json: bool,
     },
+    /// Dust lit by a star: error against run time of the models, of photons, orders and cells, and of the steps along rays (takes minutes)
+    Nebula(Output),
     /// Extreme air, rays and scenes: what held
     Stability {
         /// Answer as JSON
@@ -78,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Report::Sky(output) => sky(output),
         Report::Colour { output, all_columns } => colours(output, *all_columns),
         Report::Eye { tables, json } => eyes(tables, *json),
+        Report::Nebula(output) => dust(output),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -214,11 +220,40 @@ fn eyes(tables: &Path, json: bool) -> Result<(), Failure> {
     }
 }
 
+fn dust(output: &Output) -> Result<(), Failure> {
+    let begin = Instant::now();
+    let (clock, told) = (|| begin.elapsed(), |what: &str| eprintln!("{what}"));
+    let clouds = nebula::known::all().map_err(Failure::failed)?;
+    let table = nebula::small_table().map_err(Failure::failed)?;
+    let pictures = nebula::pictures(&clouds, &table, &clock, &told).map_err(Failure::failed)?;
+    let large = nebula::large::runs(&clock, &told).map_err(Failure::failed)?;
+    let totals = nebula::grid::totals(&table).map_err(Failure::failed)?;
+    let steps = match clouds.last() {
+        Some(cloud) => nebula::steps(cloud, &clock).map_err(Failure::failed)?,
+        None => Vec::new(),
+    };
+    if let Some(folder) = &output.out {
+        let (study, measurements) = nebula::study(&pictures);
+        write(folder, "nebula", &study, &measurements)?;
+    }
+    if output.json {
+        return answer_json(&json!({ "pictures": pictures, "large": large, "grid": totals, "steps": steps }));
+    }
+    answer(&format!(
+        "{}\n{}\n{}\n{}",
+        nebula::table(&pictures),
+        nebula::large::text(&large),
+        nebula::grid::text(&totals),
+        nebula::steps_text(&steps).trim_end()
+    ))
+}
+
 fn extremes(json: bool) -> Result<(), Failure> {
     let mut extremes = stability::run();
     extremes.extend(aerosol::extremes());
     extremes.extend(skylight::extremes());
     extremes.extend(disc::extremes());
+    extremes.extend(nebula::extremes::extremes());
     extremes.extend(eye::extremes());
     if json {
         answer_json(&extremes)?;

@@ -72,13 +72,13 @@ pub struct Arguments {
     /// Longest piece of a ray, voxels [default: what the tolerance needs]
     #[arg(long, value_name = "VOXELS", allow_negative_numbers = true)]
     step: Option<f64>,
-    /// For multiple: most flights of photons [default: 4000000]
+    /// For multiple: most flights of photons [default: 1000000]
     #[arg(long, value_name = "N")]
     flights: Option<u64>,
     /// For multiple: highest order of spherical harmonics, 0 to 8 [default: 4]
     #[arg(long, value_name = "L")]
     harmonics: Option<usize>,
-    /// For multiple: cells along the longest edge [default: half the voxels, 32 to 64]
+    /// For multiple: cells along the longest edge [default: half the voxels, 16 to 32]
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
     /// Light that the dust itself gives off: a volume in the same box

@@ -49,18 +49,12 @@ pub const MOST_CELLS: usize = 256;
 pub const MOST_FLIGHTS: u64 = 1 << 40;
 
 impl Settings {
-    /// What serves most volumes: order 4, and cells as large as two voxels, 32 at least and 64 at most along an edge.
+    /// What serves most volumes: order 4, a million flights, and cells as large as two voxels, 16 at least and 32 at most along an edge.
     #[must_use]
     pub fn fitting(volume: &Volume) -> Settings {
         let longest = volume.size().into_iter().max().unwrap_or(1);
-        Settings {
-            order: 4,
-            cells: (longest / 2).clamp(32, 64),
-            flights: 4_000_000,
-            noise: 0.0,
-            longest_walk: 10_000,
-            seed: 1,
-        }
+        let cells = (longest / 2).clamp(16, 32);
+        Settings { order: 4, cells, flights: 1_000_000, noise: 0.0, longest_walk: 10_000, seed: 1 }
     }
 }
 

@@ -1,4 +1,6 @@
-//! The grid on which photons are followed and counted: the volume's dust averaged over cells, and the way of a straight flight through them.
+//! The grids on which photons are followed and counted: the volume's dust averaged over cells, and the way of a straight flight through them.
+//!
+//! Light that has been scattered is smoother than dust: it is counted in cells that may hold several of those in which it is followed.
 
 use glam::DVec3;
 
@@ -16,16 +18,25 @@ pub(super) enum Sides {
     Periodic,
 }
 
+/// Most cells in which photons are followed, along the longest edge, unless they are counted in more.
+const FINEST: usize = 128;
+
 /// Cells of dust; their density is the mean of the volume's trilinear one.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
+    /// Where photons are counted.
     pub(super) size: [usize; 3],
     pub(super) edges: DVec3,
-    pub(super) step: DVec3,
     density: Vec<f32>,
     /// By cell: where its tally stands, or [`NONE`] far from all dust.
     pub(super) slots: Vec<u32>,
     pub(super) used: usize,
+    /// Where photons are followed.
+    fine_size: [usize; 3],
+    fine_step: DVec3,
+    fine_density: Vec<f32>,
+    /// By axis and fine index: the share of the index into `slots`.
+    holders: [Vec<u32>; 3],
     sides: Sides,
 }
 
@@ -44,16 +55,19 @@ impl Cells {
         let edges = volume.edges();
         let cell = edges.max_element() / longest as f64;
         let size = [0, 1, 2].map(|axis| ((edges[axis] / cell).round() as usize).clamp(1, longest));
-        let density = averaged(volume, size);
-        let mut cells = Cells {
-            size,
-            edges,
-            step: edges / DVec3::new(size[0] as f64, size[1] as f64, size[2] as f64),
-            slots: vec![NONE; density.len()],
-            density,
-            used: 0,
-            sides,
-        };
+        // As fine as the dust, where that is not finer than photons need.
+        let finer = |axis: usize| volume.size()[axis].min(FINEST).div_ceil(size[axis]);
+        let fine_size = [0, 1, 2].map(|axis| size[axis] * finer(axis));
+        let strides = [1, size[0], size[0] * size[1]];
+        let holders = [0, 1, 2].map(|axis| {
+            (0..fine_size[axis]).map(|index| (index / finer(axis) * strides[axis]) as u32).collect::<Vec<_>>()
+        });
+        let fine_density = averaged(volume, fine_size);
+        let density = if fine_size == size { fine_density.clone() } else { averaged(volume, size) };
+        let slots = vec![NONE; density.len()];
+        let fine_step = edges / DVec3::new(fine_size[0] as f64, fine_size[1] as f64, fine_size[2] as f64);
+        let mut cells =
+            Cells { size, edges, density, slots, used: 0, fine_size, fine_step, fine_density, holders, sides };
         cells.number();
         cells
     }
@@ -114,17 +128,17 @@ impl Cells {
         let mut index = [0_i64; 3];
         let (mut next, mut stride, mut turn) = ([f64::INFINITY; 3], [f64::INFINITY; 3], [0_i64; 3]);
         for axis in 0..3 {
-            let last = self.size[axis] as i64 - 1;
-            index[axis] = (((start[axis] + half[axis]) / self.step[axis]).floor() as i64).clamp(0, last);
+            let last = self.fine_size[axis] as i64 - 1;
+            index[axis] = (((start[axis] + half[axis]) / self.fine_step[axis]).floor() as i64).clamp(0, last);
             if along(axis) {
                 turn[axis] = if direction[axis] > 0.0 { 1 } else { -1 };
-                stride[axis] = self.step[axis] * inverse[axis].abs();
-                let face = (index[axis] + i64::from(turn[axis] > 0)) as f64 * self.step[axis] - half[axis];
+                stride[axis] = self.fine_step[axis] * inverse[axis].abs();
+                let face = (index[axis] + i64::from(turn[axis] > 0)) as f64 * self.fine_step[axis] - half[axis];
                 next[axis] = ((face - origin[axis]) * inverse[axis]).max(enter);
             }
         }
         // A slab without end has no last cell: a flight along it ends after a fixed number.
-        let most = 4 * (self.size[0] + self.size[1] + self.size[2]) + 8;
+        let most = 4 * self.fine_size.iter().sum::<usize>() + 8;
         let (mut at, mut depth) = (enter, 0.0);
         for _ in 0..most {
             let axis = if next[0] < next[1] {
@@ -136,9 +150,11 @@ impl Cells {
             };
             let to = next[axis].min(leave);
             let length = (to - at).max(0.0);
-            let cell = (index[2] as usize * self.size[1] + index[1] as usize) * self.size[0] + index[0] as usize;
-            let density_length = f64::from(self.density[cell]) * length;
-            way.push(Segment { slot: self.slots[cell], length: length as f32, depth: density_length as f32 });
+            let [x, y, z] = index.map(|i| i as usize);
+            let density_length =
+                f64::from(self.fine_density[(z * self.fine_size[1] + y) * self.fine_size[0] + x]) * length;
+            let slot = self.slots[(self.holders[0][x] + self.holders[1][y] + self.holders[2][z]) as usize];
+            way.push(Segment { slot, length: length as f32, depth: density_length as f32 });
             depth += density_length;
             at = to;
             if to >= leave || depth > enough {
@@ -146,7 +162,7 @@ impl Cells {
             }
             next[axis] += stride[axis];
             index[axis] += turn[axis];
-            let size = self.size[axis] as i64;
+            let size = self.fine_size[axis] as i64;
             if !(0..size).contains(&index[axis]) {
                 if self.sides == Sides::Open || axis == 2 {
                     break;

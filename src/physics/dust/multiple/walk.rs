@@ -248,31 +248,36 @@ impl<'a> Part<'a> {
 
     /// Counts the way just followed in its cells: the mean light of each part of it, times its length, times each function.
     fn count(&mut self, direction: DVec3, weights: &[f64; LANES], order: usize) {
-        let count = self.harmonics.count();
+        let per_slot = self.harmonics.count() * LANES;
         let functions = self.harmonics.at(direction).map(|y| y as f32);
+        let tally = &mut self.tally[order * self.cells.used * per_slot..][..self.cells.used * per_slot];
+        let mut add = |slot: u32, here: [f32; LANES]| {
+            if slot != NONE {
+                let sums = &mut tally[slot as usize * per_slot..][..per_slot];
+                for (sums, function) in sums.chunks_exact_mut(LANES).zip(&functions) {
+                    for b in 0..LANES {
+                        sums[b] += here[b] * function;
+                    }
+                }
+            }
+        };
         let k = self.grains.extinction.map(|k| k as f32);
         let mut light = weights.map(|w| w as f32);
-        let per_slot = count * LANES;
-        let tally = &mut self.tally[order * self.cells.used * per_slot..][..self.cells.used * per_slot];
+        let (mut slot, mut here) = (NONE, [0.0_f32; LANES]);
         for segment in &self.way {
-            let mut here = [0.0_f32; LANES];
+            if segment.slot != slot {
+                add(slot, here);
+                (slot, here) = (segment.slot, [0.0; LANES]);
+            }
             for b in 0..LANES {
                 let depth = k[b] * segment.depth;
                 let left = faded(depth);
                 let mean = if depth < 1e-3 { 1.0 - 0.5 * depth } else { (1.0 - left) / depth };
-                here[b] = light[b] * mean * segment.length;
+                here[b] += light[b] * mean * segment.length;
                 light[b] *= left;
             }
-            if segment.slot == NONE {
-                continue;
-            }
-            let sums = &mut tally[segment.slot as usize * per_slot..][..per_slot];
-            for (sums, function) in sums.chunks_exact_mut(LANES).zip(&functions) {
-                for b in 0..LANES {
-                    sums[b] += here[b] * function;
-                }
-            }
         }
+        add(slot, here);
     }
 }
 
