@@ -4,10 +4,16 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
+/// Linear light in a file becomes a picture.
+pub mod develop;
+/// How light becomes a picture for people.
+pub mod developing;
 /// Where the eye stands.
 pub mod eye;
 /// Volumes in files.
 pub mod files;
+/// Frames along a camera path.
+pub mod fly;
 /// A nebula out of nothing.
 pub mod generate;
 /// Pictures in files.
@@ -34,6 +40,10 @@ pub struct Arguments {
 
 #[derive(Debug, Clone, Subcommand)]
 enum Command {
+    /// Make a picture of linear light, before a photograph or a field of stars
+    Develop(develop::Arguments),
+    /// Make frames along a camera path; any number of machines share them out
+    Fly(Box<fly::Arguments>),
     /// Make a volume of dust: noise in a shape, swept clean around the stars
     Generate(Box<generate::Arguments>),
     /// Follow photons through a sphere of even dust
@@ -52,6 +62,8 @@ enum Command {
 /// A sentence that says what is wrong and what to do.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
+        Command::Develop(arguments) => develop::run(arguments),
+        Command::Fly(arguments) => fly::run(arguments),
         Command::Generate(arguments) => generate::run(arguments),
         Command::Photons(arguments) => photons::run(arguments),
         Command::Render(arguments) => render::run(arguments),

@@ -4,6 +4,8 @@
 //! volume + stars -> star light in the dust -> light scattered towards the eye -> picture (+ error, + time)
 //! ```
 
+/// What is behind a nebula.
+pub mod backdrop;
 /// The least and the most dust in each small cube of a volume.
 pub mod bricks;
 /// Where an eye stands, and the ray of each of its pixels.

@@ -166,6 +166,15 @@ impl Plate {
     }
 }
 
+/// The picture of a PNG or JPEG file, without a place on the sky.
+///
+/// # Errors
+/// What is wrong with the file, and what to do.
+pub fn picture(bytes: &[u8]) -> Result<Picture, PhotographError> {
+    check_bytes(bytes)?;
+    decode(bytes).map(|decoded| decoded.picture)
+}
+
 fn check_bytes(bytes: &[u8]) -> Result<(), PhotographError> {
     if bytes.len() as u64 > MOST_BYTES { Err(PhotographError::Bytes(bytes.len() as u64)) } else { Ok(()) }
 }
