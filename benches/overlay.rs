@@ -39,7 +39,7 @@ fn crowded(field: &FieldOfView) -> Found {
         colour_bv: Some(i as f32 / 15.0),
         separation: Angle::ZERO,
     });
-    Found { stars: stars.collect(), objects: objects.collect(), reaching_in: Vec::new() }
+    Found { stars: stars.collect(), objects: objects.collect(), reaching_in: Vec::new(), bodies: Vec::new() }
 }
 
 fn compose(c: &mut Criterion) {

@@ -15,6 +15,8 @@ pub mod compose;
 pub mod exposure;
 /// What is told of an object, fact by fact.
 pub mod facts;
+/// Sun, Moon and planets as discs.
+pub mod globe;
 /// The words: information block and eyepiece's line.
 pub mod information;
 /// Names without overlap.

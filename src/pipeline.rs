@@ -1,7 +1,7 @@
 //! The page to read: one frame of data from the mount to the eyepiece.
 //!
 //! ```text
-//! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue) -> picture (overlay) -> projector
+//! pointing (mount) -> field of view (optics, site, time) -> what is in it (catalogue, almanac) -> picture (overlay) -> projector
 //! ```
 
 use crate::overlay::menu::Menu;
@@ -56,7 +56,9 @@ pub struct Frame {
 #[must_use]
 pub fn frame(pointing: &Pointing, moment: &Moment, view: &View, composer: &mut Composer) -> Frame {
     let field = FieldOfView::new(pointing, view.instrument, moment, view.site);
-    let found = view.catalogue.within(&field.centre(), reach(&field, view.style, view.target), faintest(view));
+    let reach = reach(&field, view.style, view.target);
+    let mut found = view.catalogue.within(&field.centre(), reach, faintest(view));
+    found.bodies = composer.almanac().within(moment, view.site, &field.centre(), reach);
     let scene = Scene {
         found: &found,
         target: view.target,

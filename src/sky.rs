@@ -12,12 +12,16 @@ pub mod catalogue;
 pub mod coords;
 /// TT - UT1: measured, then foretold.
 pub mod delta_t;
+/// Sun, Moon, planets and their moons: where they are.
+pub mod ephemeris;
 /// The field of view: what part of the sky is in the eyepiece, and which way up.
 pub mod field;
 /// Altitude, azimuth, hour angle and parallactic angle, and the way back.
 pub mod horizon;
 /// Telescope, eyepieces, projector: what the optics do to the view.
 pub mod optics;
+/// How the bodies of the solar system present themselves: phase, axis, magnitude.
+pub mod physical;
 /// Where the telescope points, and how sure that is.
 pub mod pointing;
 /// From a direction on the sky to a pixel of the canvas, and back.

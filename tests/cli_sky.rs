@@ -161,3 +161,55 @@ fn escapes_in_a_name_do_not_reach_the_terminal() {
     let output = scotopic(&["sky", "show", "\u{1b}[31mXyz\u{7}zy"]);
     assert!(!output.stderr.contains(&0x1b) && !output.stderr.contains(&7));
 }
+
+#[test]
+fn a_planet_is_shown_with_its_keys_and_the_delta_t_that_was_asked_for() {
+    let arguments = ["sky", "show", "saturn", "--at", "2026-11-21T22:00:00Z", "--site", "49.2567,7.0425,250", "--json"];
+    let shown = json(&arguments);
+    for key in [
+        "ra_apparent_deg",
+        "dec_apparent_deg",
+        "ra_topocentric_deg",
+        "dec_topocentric_deg",
+        "distance_au",
+        "angular_diameter_arcsec",
+        "phase",
+        "v_mag",
+        "ring_tilt_deg",
+        "pole_ra_deg",
+        "pole_dec_deg",
+        "pole_position_angle_deg",
+        "alt_deg",
+        "az_deg",
+    ] {
+        assert!(shown[key].is_f64(), "{key}: {}", shown[key]);
+    }
+    assert!(shown["libration_lon_deg"].is_null());
+    assert_eq!(shown["central_meridian_deg"].as_object().unwrap().keys().collect::<Vec<_>>(), ["I", "III"]);
+    // ephem: -6.1721 degrees.
+    assert!((shown["ring_tilt_deg"].as_f64().unwrap() + 6.1721).abs() < 0.1);
+    let moons = shown["moons"].as_array().unwrap();
+    assert_eq!(moons.len(), 8);
+    for key in ["name", "dx_east_arcsec", "dy_north_arcsec", "in_front", "hidden", "eclipsed"] {
+        assert!(!moons[5][key].is_null(), "{key}");
+    }
+    assert_eq!(moons[5]["name"], "Titan");
+
+    let moon =
+        |delta_t: &str| json(&["sky", "show", "Moon", "--at", "2050-01-01T00:00:00Z", "--delta-t", delta_t, "--json"]);
+    let (early, late) = (moon("74.5"), moon("108.06"));
+    assert_eq!(late["delta_t_s"], 108.06);
+    // The Moon moves by half an arcsecond a second.
+    let moved = (late["dec_apparent_deg"].as_f64().unwrap() - early["dec_apparent_deg"].as_f64().unwrap())
+        .hypot(late["ra_apparent_deg"].as_f64().unwrap() - early["ra_apparent_deg"].as_f64().unwrap());
+    assert!((10.0..25.0).contains(&(moved * 3600.0)), "{} arcseconds", moved * 3600.0);
+}
+
+#[test]
+fn a_date_beyond_the_ephemeris_is_refused_and_one_at_its_end_is_told_with_its_error() {
+    let refused = scotopic(&["sky", "show", "Jupiter", "--at", "1400-01-01T00:00:00Z"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("1500 to 2500"));
+    let widened = json(&["sky", "show", "Jupiter", "--at", "2400-01-01T00:00:00Z", "--json"]);
+    assert!(widened["error_arcsec"].as_f64().unwrap() > 4.0);
+}

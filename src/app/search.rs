@@ -2,6 +2,7 @@
 
 use super::log::printable;
 use crate::sky::catalogue::{Catalogue, Object, SearchError};
+use crate::sky::ephemeris::Body;
 
 /// No name is longer.
 const LONGEST: usize = 40;
@@ -22,9 +23,23 @@ pub struct Search {
     pub meant: Option<Object>,
     /// Whether what was typed is no name, so that the offered ones are guesses.
     pub missed: bool,
+    /// Sun, Moon and planets, where they stood when the box was opened.
+    bodies: Vec<Object>,
 }
 
 impl Search {
+    /// An empty box that knows these bodies of the solar system beside the catalogue.
+    #[must_use]
+    pub fn among(bodies: Vec<Object>) -> Search {
+        Search { bodies, ..Search::default() }
+    }
+
+    /// The body of the solar system of this name.
+    fn body(&self, name: &str) -> Option<Object> {
+        let body = Body::from_name(name)?;
+        self.bodies.iter().find(|object| object.name == body.name()).cloned()
+    }
+
     /// A character was typed.
     pub fn typed(&mut self, c: char) {
         if !c.is_control() && self.text.chars().count() < LONGEST {
@@ -55,7 +70,7 @@ impl Search {
             self.bar = None;
         }
         let name = self.bar.and_then(|bar| self.offered.get(bar)).unwrap_or(&self.text);
-        self.meant = Catalogue::embedded().search(name).ok();
+        self.meant = self.body(name).or_else(|| Catalogue::embedded().search(name).ok());
     }
 
     fn look(&mut self) {
@@ -68,6 +83,15 @@ impl Search {
         }
         let catalogue = Catalogue::embedded();
         self.offered = catalogue.complete(&self.text, OFFERED);
+        let typed = self.text.trim().to_lowercase();
+        let begin = self.bodies.iter().filter(|body| body.name.to_lowercase().starts_with(&typed));
+        let names: Vec<String> = begin.map(|body| body.name.clone()).collect();
+        self.offered.splice(0..0, names);
+        self.offered.truncate(OFFERED);
+        self.meant = self.body(&self.text);
+        if self.meant.is_some() {
+            return;
+        }
         match catalogue.search(&self.text) {
             Ok(object) => self.meant = Some(object),
             Err(SearchError::NotFound { near, .. }) if self.offered.is_empty() => {

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::settings::Settings;
 use super::{Failure, answer, answer_json, note, photographs};
+use crate::overlay::globe::Map;
 use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style};
 use crate::picture::png;
 use crate::pipeline::{self, Frame, View};
@@ -16,6 +17,7 @@ use crate::sky::astrometry::{Astrometry, Reduction};
 use crate::sky::catalogue::{Catalogue, Object};
 use crate::sky::coords::Equatorial;
 use crate::sky::delta_t;
+use crate::sky::ephemeris::{Body, Ephemeris, InView};
 use crate::sky::field::FieldOfView;
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::{Motion, Pointing};
@@ -26,7 +28,7 @@ use crate::units::{Angle, SurfaceBrightness};
 /// The settings of `overlay`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A name: M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
+    /// A name: Jupiter, Moon, M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
     #[arg(value_name = "NAME", required_unless_present = "ra", conflicts_with = "ra")]
     pub name: Vec<String>,
     /// Right ascension (J2000) in degrees, in place of a name
@@ -50,6 +52,13 @@ pub struct Arguments {
     /// Folder of your photographs: FITS with WCS, PNG or JPEG with a TOML file beside each [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub photographs: Option<PathBuf>,
+    /// Folder of maps of Sun, Moon and planets to wrap on their discs: moon.jpg, jupiter.png..., equirectangular, longitude
+    /// -180 degrees at the left edge
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
+    /// TT - UT1 in seconds (default: measured, then Espenak and Meeus)
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub delta_t: Option<f64>,
     /// Telescope, eyepieces and projector [default: the settings', else those of the thesis]
     #[arg(long, value_name = "FILE")]
     pub instrument: Option<PathBuf>,
@@ -95,6 +104,7 @@ struct Answer<'a> {
     mode: Mode,
     stars: usize,
     objects: Vec<&'static str>,
+    bodies: Vec<&'static str>,
     photographs: Vec<&'a str>,
     black: bool,
 }
@@ -106,11 +116,6 @@ struct Answer<'a> {
 pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     // Where to look, when, through what.
     let catalogue = Catalogue::embedded();
-    let target = target(arguments, catalogue)?;
-    let entry = match &target {
-        Some(object) => object.astrometry,
-        None => Astrometry::fixed(position(arguments)?),
-    };
     let instrument_file = arguments.instrument.as_deref().or(settings.instrument.as_deref());
     let instrument = instrument(instrument_file, arguments.eyepiece)?;
     let site = arguments.site.or(settings.site);
@@ -118,10 +123,20 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         note("no --site was given: the field is drawn with north where the tube's upper side is");
     }
     let utc = arguments.at.unwrap_or_else(now);
-    let moment = Moment { utc, delta_t_s: delta_t::default_seconds(utc) };
+    let moment = match arguments.delta_t {
+        Some(seconds) => Moment { utc, delta_t_s: within("--delta-t", seconds, -100_000.0, 100_000.0)? },
+        None => Moment { utc, delta_t_s: delta_t::default_seconds(utc) },
+    };
+    let target = target(arguments, catalogue, &moment, site.as_ref())?;
+    let entry = match &target {
+        Some(object) => object.astrometry,
+        None => Astrometry::fixed(position(arguments)?),
+    };
     let style = Style { facts: settings.facts.clone(), ..style(arguments)? };
     let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, pupil_mm: settings.pupil_mm };
     let photographs = photographs(arguments.photographs.as_deref().or(settings.photographs.as_deref()))?;
+
+    let mut composer = Composer::default().with_maps(maps(arguments.maps.as_deref())?);
 
     // The field, what is in it, and the picture.
     let mut pointing = Pointing {
@@ -145,7 +160,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         animation: None,
         menu: None,
     };
-    let Frame { field, found, picture } = pipeline::frame(&pointing, &moment, &view, &mut Composer::default());
+    let Frame { field, found, picture } = pipeline::frame(&pointing, &moment, &view, &mut composer);
     write(&arguments.out, &png::encode(&picture).map_err(Failure::failed)?)?;
 
     let shown = Answer {
@@ -164,6 +179,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         mode: style.mode,
         stars: found.stars.len(),
         objects: found.objects.iter().map(|object| object.name).collect(),
+        bodies: found.bodies.iter().map(|seen| seen.body.name()).collect(),
         photographs: photographs.iter().map(|photograph| photograph.name.as_str()).collect(),
         black: picture.is_black(),
     };
@@ -182,11 +198,30 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     ))
 }
 
-fn target(arguments: &Arguments, catalogue: &Catalogue) -> Result<Option<Object>, Failure> {
+/// What is looked at: a body of the solar system where it is at that moment, or what the catalogue has of that name.
+fn target(
+    arguments: &Arguments,
+    catalogue: &Catalogue,
+    moment: &Moment,
+    site: Option<&Site>,
+) -> Result<Option<Object>, Failure> {
     if arguments.ra.is_some() {
         return Ok(None);
     }
-    catalogue.search(&arguments.name.join(" ")).map(Some).map_err(Failure::failed)
+    let name = arguments.name.join(" ");
+    if let Some(body) = Body::from_name(&name) {
+        let ephemeris = Ephemeris::at(moment).map_err(Failure::failed)?;
+        return Ok(Some(InView::of(&ephemeris, body, site).object()));
+    }
+    catalogue.search(&name).map(Some).map_err(Failure::failed)
+}
+
+/// The maps of a folder, by the names of their bodies.
+fn maps(folder: Option<&Path>) -> Result<Vec<Map>, Failure> {
+    let Some(folder) = folder else { return Ok(Vec::new()) };
+    let (maps, notes) = photographs::read_maps(folder)?;
+    notes.iter().for_each(|sentence| note(sentence));
+    Ok(maps)
 }
 
 fn position(arguments: &Arguments) -> Result<Equatorial<crate::sky::coords::J2000>, Failure> {

@@ -5,7 +5,10 @@ use std::path::Path;
 
 use super::Failure;
 use crate::overlay::Photograph;
+use crate::overlay::globe::Map;
+use crate::overlay::photograph::read::picture;
 use crate::overlay::photograph::{MOST_BYTES, PhotographError};
+use crate::sky::ephemeris::Body;
 
 /// Most files that are looked at.
 const MOST_FILES: usize = 1000;
@@ -35,6 +38,40 @@ pub fn read_folder(folder: &Path) -> Result<(Vec<Photograph>, Vec<String>), Fail
     Ok((photographs, notes))
 }
 
+/// The maps of a folder (`jupiter.png`, `moon.jpg`...), and a sentence for each that could not be used. Files of other names are
+/// left alone.
+///
+/// # Errors
+/// The folder itself cannot be read.
+pub fn read_maps(folder: &Path) -> Result<(Vec<Map>, Vec<String>), Failure> {
+    let unreadable = |error| {
+        Failure::Failed(format!("the maps in {} cannot be read: {error}; give an existing folder", folder.display()))
+    };
+    let entries = fs::read_dir(folder).map_err(unreadable)?;
+    let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file()).collect();
+    paths.sort();
+    let (mut maps, mut notes) = (Vec::new(), Vec::new());
+    for path in paths.into_iter().take(MOST_FILES) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let body = Body::from_name(&path.file_stem().unwrap_or_default().to_string_lossy());
+        let Some(body) = body.filter(|_| matches!(ending.as_str(), "png" | "jpg" | "jpeg")) else { continue };
+        match bounded(&path).and_then(|bytes| picture(&bytes).map_err(|error| error.to_string())) {
+            Ok(picture) => maps.push(Map::new(body, picture)),
+            Err(why) => notes.push(format!("the map {} is not used: {why}", path.display())),
+        }
+    }
+    Ok((maps, notes))
+}
+
+/// The bytes of a file that is not too large.
+fn bounded(path: &Path) -> Result<Vec<u8>, String> {
+    let size = fs::metadata(path).map_err(|error| error.to_string())?.len();
+    if size > MOST_BYTES {
+        return Err(PhotographError::Bytes(size).to_string());
+    }
+    fs::read(path).map_err(|error| error.to_string())
+}
+
 /// A file's photograph; `None` for a file of another kind.
 fn read(path: &Path) -> Option<Result<Photograph, String>> {
     let ending = path.extension()?.to_string_lossy().to_lowercase();
@@ -47,11 +84,7 @@ fn read(path: &Path) -> Option<Result<Photograph, String>> {
 }
 
 fn read_as(path: &Path, name: &str, fits: bool) -> Result<Photograph, String> {
-    let size = fs::metadata(path).map_err(|error| error.to_string())?.len();
-    if size > MOST_BYTES {
-        return Err(PhotographError::Bytes(size).to_string());
-    }
-    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    let bytes = bounded(path)?;
     if fits {
         return Photograph::from_fits(name, &bytes).map_err(|error| error.to_string());
     }

@@ -1,5 +1,8 @@
 //! `scotopic sky`: where something is, and what is in a field.
 
+/// Sun, Moon and planets.
+mod solar;
+
 use std::fmt::Write;
 
 use clap::{Args, Subcommand};
@@ -11,6 +14,7 @@ use crate::sky::astrometry::{Astrometry, Reduction};
 use crate::sky::atlas;
 use crate::sky::catalogue::{Band, Catalogue, Object, constellation};
 use crate::sky::coords::{Equatorial, J2000};
+use crate::sky::ephemeris::Body;
 use crate::sky::horizon::{self, Horizon};
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
@@ -29,7 +33,7 @@ pub enum Command {
 /// The settings of `sky show`.
 #[derive(Debug, Args)]
 pub struct ShowArguments {
-    /// A name: M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
+    /// A name: Jupiter, Moon, M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
     #[arg(value_name = "NAME", required_unless_present = "ra", conflicts_with = "ra")]
     pub name: Vec<String>,
     /// Right ascension (J2000) in degrees, in place of a name
@@ -109,6 +113,9 @@ struct Shown<'a> {
 }
 
 fn show(arguments: &ShowArguments, profile_site: Option<Site>) -> Result<(), Failure> {
+    if let Some(body) = Body::from_name(&arguments.name.join(" ")) {
+        return solar::show(body, arguments, arguments.site.or(profile_site));
+    }
     let object = match (arguments.ra, arguments.dec) {
         (Some(ra), Some(dec)) => Err(position(ra, dec)?),
         _ => Ok(Catalogue::embedded().search(&arguments.name.join(" ")).map_err(Failure::failed)?),
@@ -124,10 +131,7 @@ fn show(arguments: &ShowArguments, profile_site: Option<Site>) -> Result<(), Fai
     let site = arguments.site.or(profile_site);
     let horizon = site.map(|site| Horizon::new(&reduction, &site));
     let airless = horizon.map(|horizon| horizon.airless(&apparent));
-    let air = Air {
-        pressure_hpa: within("--pressure", arguments.pressure, 0.0, 1100.0)?,
-        temperature_c: within("--temperature", arguments.temperature, -90.0, 60.0)?,
-    };
+    let air = air(arguments)?;
     let words = object.as_ref().map(Object::type_words);
     let shown = Shown {
         ra_j2000_deg: astrometry.position.ra().to_degrees(),
@@ -284,6 +288,14 @@ fn within(what: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure> {
     } else {
         Err(Failure::Asked(format!("{what} {value} is out of range: give {low} to {high}")))
     }
+}
+
+/// The air at the site.
+fn air(arguments: &ShowArguments) -> Result<Air, Failure> {
+    Ok(Air {
+        pressure_hpa: within("--pressure", arguments.pressure, 0.0, 1100.0)?,
+        temperature_c: within("--temperature", arguments.temperature, -90.0, 60.0)?,
+    })
 }
 
 fn moment(arguments: &ShowArguments) -> Result<Moment, Failure> {

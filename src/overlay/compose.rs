@@ -1,6 +1,7 @@
 //! What is in the field, as one picture.
 
 use super::canvas::{Area, Disc, Ink, Region, circle, lay_text, line};
+use super::globe::{self, Map};
 use super::labels::{self, Wanted};
 use super::layout::{self, Beside, Line};
 use super::marks::{self, Outline};
@@ -11,6 +12,7 @@ use super::text::{Scribe, Weight};
 use super::{colour, information, stars};
 use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
+use crate::sky::ephemeris::{Almanac, InView};
 use crate::sky::field::FieldOfView;
 use crate::sky::project::Projection;
 use crate::units::Angle;
@@ -45,6 +47,8 @@ pub struct Composer {
     scribe: Scribe,
     ink: Option<Ink>,
     photographs: Option<Laid>,
+    almanac: Almanac,
+    maps: Vec<Map>,
 }
 
 /// Photographs laid on a canvas, and for which view.
@@ -68,6 +72,18 @@ pub fn compose(scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> 
 }
 
 impl Composer {
+    /// Wraps maps on the discs of their bodies from now on.
+    #[must_use]
+    pub fn with_maps(mut self, maps: Vec<Map>) -> Composer {
+        self.maps = maps;
+        self
+    }
+
+    /// Where the bodies of the solar system are, remembered from frame to frame.
+    pub fn almanac(&mut self) -> &mut Almanac {
+        &mut self.almanac
+    }
+
     /// The picture of a scene: exactly black while the mount slews, when the position is stale, and in mode off (there the
     /// menu alone is drawn, if one is open).
     #[must_use]
@@ -125,6 +141,7 @@ impl Composer {
             photographed |= frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style));
         }
         draw_stars(&mut picture, scene, field, style, &view, photographed);
+        draw_bodies(&mut picture, scene, style, &view, &self.maps);
         let outlines = outlines(scene, &view);
         self.draw_marks(&mut picture, ink, &outlines, target.as_ref(), field, style, &view, visible);
 
@@ -338,7 +355,13 @@ impl Composer {
     ) {
         let em_px = (layout::text_px(field, style) * 0.85).max(13.0);
         let named = names(scene, field, view, outlines, target);
-        // Nothing may be written over the target's middle.
+        // Nothing may be written over a disc, or over the target's middle.
+        for seen in &scene.found.bodies {
+            let radius = view.projection.pixels(seen.globe.radius);
+            if let Some((x, y)) = view.projection.pixel(&seen.position).filter(|_| radius < 150.0) {
+                taken.push(Area::about(x, y, radius, radius));
+            }
+        }
         if let Some((x, y)) = target.and_then(|target| view.projection.pixel(&target.astrometry.position)) {
             taken.push(Area::about(x, y, 28.0, 28.0));
         }
@@ -426,10 +449,31 @@ fn names(
             None => {}
         }
     }
+    for seen in &scene.found.bodies {
+        name_body(&mut named, seen, view);
+    }
     named.retain(|name| view.region.contains(name.x, name.y));
     named.sort_by(|a, b| a.rank.total_cmp(&b.rank));
     named.truncate(MOST_NAMES);
     named
+}
+
+/// A body's name and those of its moons, also of a moon that is in the planet's shadow; one behind the planet has none.
+fn name_body(named: &mut Vec<Named>, seen: &InView, view: &View) {
+    if let Some((x, y)) = view.projection.pixel(&seen.position) {
+        let rings = if seen.body == crate::sky::ephemeris::Body::Saturn { 2.3 } else { 1.0 };
+        let radius = view.projection.pixels(seen.globe.radius) * rings;
+        // A disc that fills the view needs no name.
+        if radius < 200.0 {
+            named.push(Named { text: seen.body.name().into(), x, y, radius, rank: -1e6, faint: false });
+        }
+    }
+    for (moon, position) in seen.moons.iter().filter(|(moon, _)| !moon.hidden) {
+        let Some((x, y)) = view.projection.pixel(position) else { continue };
+        let radius = f64::from(stars::sigma_px(moon.magnitude.0 as f32) * 1.6);
+        let text = if moon.eclipsed { format!("{} (in shadow)", moon.name) } else { moon.name.into() };
+        named.push(Named { text, x, y, radius, rank: moon.magnitude.0 - 30.0, faint: moon.eclipsed });
+    }
 }
 
 /// How far from the middle of the field a catalogue must be asked, so that nothing is missing in the picture: in mode beside a
@@ -477,6 +521,25 @@ fn outlines(scene: &Scene, view: &View) -> Vec<(FieldObject, Outline)> {
         .collect()
 }
 
+/// Draws discs, and the moons that are neither behind them nor in their shadow.
+fn draw_bodies(picture: &mut Picture, scene: &Scene, style: &Style, view: &View, maps: &[Map]) {
+    let light = photographs_light(style);
+    for seen in &scene.found.bodies {
+        globe::draw(picture, &view.region, &view.projection, seen, maps, &light);
+        for (moon, position) in seen.moons.iter().filter(|(moon, _)| !moon.hidden && !moon.eclipsed) {
+            let Some((x, y)) = view.projection.pixel(position).filter(|(x, y)| view.region.contains(*x, *y)) else {
+                continue;
+            };
+            stars::point(picture, &view.region, x, y, moon.magnitude.0 as f32, Some(0.8), style.palette);
+        }
+    }
+}
+
+/// Whether a place on the sky is behind a disc.
+fn behind(scene: &Scene, position: &crate::sky::coords::Equatorial<crate::sky::coords::J2000>) -> bool {
+    scene.found.bodies.iter().any(|seen| seen.position.separation(position) < seen.globe.radius * seen.globe.polar)
+}
+
 /// Draws the stars; where a photograph already shows them they are left out.
 fn draw_stars(
     picture: &mut Picture,
@@ -487,8 +550,9 @@ fn draw_stars(
     photographed: bool,
 ) {
     for star in &scene.found.stars {
-        let Some((x, y)) = view.projection.pixel(&stars::place(star, field.years)) else { continue };
-        if !view.region.contains(x, y) {
+        let place = stars::place(star, field.years);
+        let Some((x, y)) = view.projection.pixel(&place) else { continue };
+        if !view.region.contains(x, y) || behind(scene, &place) {
             continue;
         }
         let shown = photographed && picture.row(y as usize)[x as usize].iter().sum::<f32>() > 0.02;

@@ -35,9 +35,22 @@ pub fn peak(v_mag: f32) -> f32 {
 
 /// Adds a star's light around a point.
 pub fn draw(picture: &mut Picture, region: &Region, x: f64, y: f64, star: &FieldStar, palette: Palette) {
-    let sigma = sigma_px(star.v_mag);
+    point(picture, region, x, y, star.v_mag, star.colour_bv, palette);
+}
+
+/// Adds the light of a point of a magnitude and colour.
+pub fn point(
+    picture: &mut Picture,
+    region: &Region,
+    x: f64,
+    y: f64,
+    v_mag: f32,
+    colour_bv: Option<f32>,
+    palette: Palette,
+) {
+    let sigma = sigma_px(v_mag);
     let reach = f64::from(sigma * 3.0).ceil();
-    let light = colour::in_palette(palette, colour::of_star(star.colour_bv)).map(|channel| channel * peak(star.v_mag));
+    let light = colour::in_palette(palette, colour::of_star(colour_bv)).map(|channel| channel * peak(v_mag));
     let (top, bottom) = ((y - reach).max(0.0) as usize, ((y + reach).max(0.0) as usize).min(picture.height()));
     for j in top..bottom {
         let span = region.span(j);

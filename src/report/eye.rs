@@ -156,10 +156,13 @@ fn recovered(cells: &[&str]) -> Vec<(f64, usize, bool)> {
     ]
 }
 
+/// What is tried, and how.
+type Case = (&'static str, fn() -> Result<String, String>);
+
 /// Extreme skies, lights and adaptations: each gives finite numbers, clamped and told where a model does not hold.
 #[must_use]
 pub fn extremes() -> Vec<Extreme> {
-    let cases: [(&'static str, fn() -> Result<String, String>); 4] = [
+    let cases: [Case; 4] = [
         ("tone at adaptations of 0, 1e-8 and 1e4 cd/m2", tone_extremes),
         ("skies of 16 and 22.2, objects of 1e-3' and 180 degrees", sky_extremes),
         ("Blackwell's table outside its edges", table_extremes),

@@ -3,10 +3,11 @@
 //!
 //! The place of date is equinox-based (right ascension from the true equinox, not from the CIO) and geocentric.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use sofars::astro::IauAstrom;
 
 use super::coords::{Equatorial, J2000, OfDate};
+use super::ephemeris::planets;
 use super::time::Moment;
 use crate::units::Angle;
 
@@ -43,15 +44,17 @@ pub struct Reduction {
 }
 
 impl Reduction {
-    /// The Earth's place by SOFA `epv00` (1900 to 2100, 11 km) or, outside those years, `plan94` (its barycentric velocity is
-    /// then the heliocentric one: 0.01 arcsecond of aberration); the matrix is IAU 2006 precession with IAU 2000A nutation.
+    /// The Earth's place by SOFA `epv00` (1900 to 2100, 11 km) or, outside those years, VSOP87 (under an arcsecond; its
+    /// barycentric velocity is then the heliocentric one: 0.01 arcsecond of aberration); the matrix is IAU 2006 precession with
+    /// IAU 2000A nutation.
     #[must_use]
     pub fn at(moment: &Moment) -> Reduction {
         let (tt1, tt2) = moment.tt();
         let (ut1, ut2) = moment.ut1();
-        let still = [[1.0, 0.0, 0.0], [0.0; 3]];
         let (heliocentric, barycentric) = sofars::eph::epv00(tt1, tt2).unwrap_or_else(|| {
-            let earth = sofars::eph::plan94(tt1, tt2, 3).map_or(still, |(earth, _status)| earth);
+            let earth = |later: f64| planets::earth(tt1 + tt2 + later);
+            let velocity = (earth(0.5) - earth(-0.5)).to_array();
+            let earth = [earth(0.0).to_array(), velocity];
             (earth, earth)
         });
         let mut astrom = IauAstrom::default();
@@ -105,15 +108,46 @@ impl Reduction {
         Equatorial::new(Angle::radians(ra), Angle::radians(dec))
     }
 
+    /// From the Sun to the Earth on the catalogue's axes, astronomical units.
+    #[must_use]
+    pub fn earth_from_sun_au(&self) -> DVec3 {
+        self.earth_from_sun_au
+    }
+
+    /// The Earth's velocity against the barycentre over the speed of light, catalogue axes.
+    #[must_use]
+    pub fn earth_velocity_c(&self) -> DVec3 {
+        DVec3::from(self.astrom.v)
+    }
+
+    /// The matrix from the catalogue's axes to the equator and equinox of date.
+    #[must_use]
+    pub fn to_of_date(&self) -> DMat3 {
+        DMat3::from_cols_array_2d(&self.astrom.bpn).transpose()
+    }
+
+    /// The place of date of a body of the solar system that lies at `from_earth` from here and at `from_sun` from the Sun
+    /// (catalogue axes, any unit): deflection by the Sun for a source at a finite distance (SOFA `ld`), then aberration.
+    pub(super) fn of_date_past_the_sun(&self, from_earth: DVec3, from_sun: DVec3) -> Equatorial<OfDate> {
+        let (p, q) = (from_earth.normalize_or(DVec3::X), from_sun.normalize_or(DVec3::X));
+        // SOFA's own limit, where deflection would grow beyond the Sun's limb.
+        let limit = 1e-6 / (self.astrom.em * self.astrom.em).max(1.0);
+        let bent = sofars::astro::ld(1.0, p.to_array(), q.to_array(), self.astrom.eh, self.astrom.em, limit);
+        self.of_date_without_deflection(DVec3::from(bent))
+    }
+
+    /// The place of date of a direction on the catalogue's axes: aberration, then precession and nutation.
+    pub(super) fn of_date_without_deflection(&self, direction: DVec3) -> Equatorial<OfDate> {
+        let direction = direction.normalize_or(DVec3::X);
+        let seen = sofars::astro::ab(&direction.to_array(), &self.astrom.v, self.astrom.em, self.astrom.bm1);
+        Equatorial::from_direction(self.to_of_date() * DVec3::from(seen))
+    }
+
     /// The apparent place of the Sun: where the Earth was, seen from the Sun, a light time ago, and aberration.
     pub(super) fn sun(&self) -> Equatorial<OfDate> {
         // The light that arrives now left when the Sun stood where it does now against the barycentre, within 13 m/s times 8
         // minutes = 0.01 arcsecond: so the direction is -(Earth from Sun) now, and aberration does all the rest.
-        let direction = (-self.earth_from_sun_au).normalize_or(DVec3::X);
-        let seen = sofars::astro::ab(&direction.to_array(), &self.astrom.v, self.astrom.em, self.astrom.bm1);
-        let bpn = self.astrom.bpn.map(DVec3::from);
-        let seen = DVec3::from(seen);
-        Equatorial::from_direction(DVec3::new(bpn[0].dot(seen), bpn[1].dot(seen), bpn[2].dot(seen)))
+        self.of_date_without_deflection(-self.earth_from_sun_au)
     }
 }
 

@@ -13,8 +13,11 @@ use crate::app::search::Search;
 use crate::hw::mount::order::Order;
 use crate::safety::Acknowledgement;
 use crate::sky::alignment;
-use crate::sky::catalogue::Catalogue;
+use crate::sky::catalogue::{Catalogue, Object};
+use crate::sky::ephemeris::{Body, Ephemeris, InView};
 use crate::sky::field::FieldOfView;
+use crate::sky::site::Site;
+use crate::sky::time::Moment;
 
 /// An arrow pushes the picture by so many pixels: half a field takes thirty.
 const PUSH_PX: f64 = 8.0;
@@ -91,7 +94,8 @@ pub(super) fn done(model: &mut Model, action: Action) -> Vec<Effect> {
     match action {
         Action::Stop => return goto::stop(model),
         Action::Search => {
-            model.search = Search::default();
+            let seen = model.moment().map(|moment| bodies(&moment, model.site().as_ref()));
+            model.search = Search::among(seen.unwrap_or_default());
             model.show(Screen::Search);
         }
         Action::Goto => return goto::go(model),
@@ -201,6 +205,12 @@ fn use_eyepiece(model: &mut Model, index: usize) {
     let eyepiece = model.instrument.eyepiece();
     let text = format!("{:.0} mm eyepiece, {:.0}×", eyepiece.focal_length_mm, model.instrument.magnification());
     model.note(text);
+}
+
+/// Sun, Moon and planets where they are now; none when the date is beyond the ephemeris.
+fn bodies(moment: &Moment, site: Option<&Site>) -> Vec<Object> {
+    let Ok(ephemeris) = Ephemeris::at(moment) else { return Vec::new() };
+    Body::ALL.into_iter().map(|body| InView::of(&ephemeris, body, site).object()).collect()
 }
 
 /// Takes the next deep-sky object in the field as the target; the list is nearest first.

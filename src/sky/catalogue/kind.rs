@@ -39,12 +39,14 @@ pub enum Kind {
     SupernovaRemnant,
     /// A nova.
     Nova,
+    /// The Sun, the Moon or a planet: not of the catalogue.
+    SolarSystem,
     /// Something else, or a star that Dreyer took for a nebula.
     Other,
 }
 
 /// Every kind with OpenNGC's code for it and its name in plain words.
-const TABLE: [(Kind, &str, &str); 19] = [
+const TABLE: [(Kind, &str, &str); 20] = [
     (Kind::Star, "*", "star"),
     (Kind::DoubleStar, "**", "double star"),
     (Kind::Association, "*Ass", "association of stars"),
@@ -63,6 +65,7 @@ const TABLE: [(Kind, &str, &str); 19] = [
     (Kind::ReflectionNebula, "RfN", "reflection nebula"),
     (Kind::SupernovaRemnant, "SNR", "supernova remnant"),
     (Kind::Nova, "Nova", "nova"),
+    (Kind::SolarSystem, "Sol", "body of the solar system"),
     (Kind::Other, "Other", "object of another sort"),
 ];
 

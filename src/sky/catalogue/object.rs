@@ -4,6 +4,7 @@ use super::kind::Kind;
 use crate::eye::Patch;
 use crate::sky::astrometry::Astrometry;
 use crate::sky::coords::{Equatorial, J2000};
+use crate::sky::ephemeris::InView;
 use crate::units::{Angle, Magnitude, SurfaceBrightness};
 
 /// The band in which a magnitude was measured.
@@ -158,4 +159,6 @@ pub struct Found {
     pub objects: Vec<FieldObject>,
     /// Large deep-sky objects whose centre is outside but whose outline may reach in.
     pub reaching_in: Vec<FieldObject>,
+    /// What of the solar system is inside. A catalogue does not know it: an [`Almanac`](crate::sky::ephemeris::Almanac) does.
+    pub bodies: Vec<InView>,
 }
