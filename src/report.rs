@@ -20,6 +20,8 @@ pub mod plot;
 pub mod refraction;
 /// The thesis' figure of how a voxel scatters.
 pub mod scattering_figure;
+/// The scattering table of the thesis, and photons through spheres.
+pub mod scattering_table;
 /// The light of the sky, against photons followed one by one.
 pub mod skylight;
 /// Extreme air and extreme rays.

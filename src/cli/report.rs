@@ -10,7 +10,7 @@ use super::{Failure, answer, answer_json};
 use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
 use crate::report::{
-    Measurement, Study, aerosol, colour, disc, eye, measure, nebula, plot, skylight, stability, table,
+    Measurement, Study, aerosol, colour, disc, eye, measure, nebula, plot, scattering_table, skylight, stability, table,
 };
 
 /// Which report.
@@ -20,6 +20,7 @@ use crate::report::{
     scotopic report refraction --out report      and report/refraction.svg, report/refraction.json\n  \
     scotopic report colour                       the error of few wavelengths, and the times of the picture\n  \
     scotopic report nebula                       dust lit by a star, against pictures of another program\n  \
+    scotopic report scattering-table             photons through dust, and the thesis' table\n  \
     scotopic report stability                    what held, under extreme air and rays")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -53,6 +54,8 @@ enum Report {
     },
     /// Dust lit by a star: error against run time of the models, of photons, orders and cells, and of the steps along rays (takes minutes)
     Nebula(Output),
+    /// Photons through dust against closed forms, the time of the scattering table, and error against run time
+    ScatteringTable(Output),
     /// Extreme air, rays and scenes: what held
     Stability {
         /// Answer as JSON
@@ -84,6 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Report::Colour { output, all_columns } => colours(output, *all_columns),
         Report::Eye { tables, json } => eyes(tables, *json),
         Report::Nebula(output) => dust(output),
+        Report::ScatteringTable(output) => scattering(output),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -172,6 +176,31 @@ fn colours(output: &Output, all_columns: bool) -> Result<(), Failure> {
     ))
 }
 
+/// The error of the tables that stand for the truth.
+const TRUTH: f64 = 0.003;
+
+fn scattering(output: &Output) -> Result<(), Failure> {
+    let begin = Instant::now();
+    let clock = || begin.elapsed();
+    let mut bar = super::sun::progress::Bar::new("photons through spheres");
+    let agreement = scattering_table::agreement(&clock, |share| bar.show(share)).map_err(Failure::failed)?;
+    bar.end();
+    let mut bar = super::sun::progress::Bar::new("the thesis' table");
+    let cost = scattering_table::cost(&clock, &mut |share| bar.show(share)).map_err(Failure::failed)?;
+    bar.end();
+    eprintln!("rows to {} % as the truth, and both methods against them", 100.0 * TRUTH);
+    let truths = scattering_table::truths(TRUTH).map_err(Failure::failed)?;
+    let study = scattering_table::study(&truths);
+    let measurements = timed(&study);
+    if let Some(folder) = &output.out {
+        write(folder, "scattering-table", &study, &measurements)?;
+    }
+    if output.json {
+        return answer_json(&json!({ "agreement": agreement, "cost": cost, "measurements": measurements }));
+    }
+    answer(&format!("{}\n{}", scattering_table::lines(&agreement, &cost), table(&study, &measurements).trim_end()))
+}
+
 fn timed(study: &Study<'_>) -> Vec<Measurement> {
     let begin = Instant::now();
     measure(study, &|| begin.elapsed())
@@ -255,6 +284,7 @@ fn extremes(json: bool) -> Result<(), Failure> {
     extremes.extend(disc::extremes());
     extremes.extend(nebula::extremes::extremes());
     extremes.extend(eye::extremes());
+    extremes.extend(scattering_table::extremes());
     if json {
         answer_json(&extremes)?;
     } else {
