@@ -3,9 +3,10 @@
 use crate::picture::Picture;
 
 /// Light of the projector's primaries: shares of white's luminance for the cones (sRGB), and of each what the rods see of a
-/// candela: those of an ordinary screen's primaries (Apple Studio Display, from the CIE tables).
+/// candela: red that of an ordinary screen, 0.206; green and blue in the ratio of the same screen's (Apple Studio Display,
+/// from the CIE tables), so that white has D65's 2.46.
 const PHOTOPIC: [f64; 3] = [0.2126, 0.7152, 0.0722];
-const SCOTOPIC_OVER_PHOTOPIC: [f64; 3] = [0.2059, 1.6474, 10.6425];
+const SCOTOPIC_OVER_PHOTOPIC: [f64; 3] = [0.206, 2.045, 13.21];
 
 /// A pixel under this share of full drive counts as dark.
 const DARK: f32 = 1.0 / 512.0;
@@ -68,18 +69,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_red_half_is_a_fifth_of_white_to_the_cones_and_a_twenty_fifth_to_the_rods() {
+    fn red_and_white_are_to_cones_and_rods_what_the_lamps_of_the_same_names_are() {
         let mut picture = Picture::black(64, 64);
         for y in 0..32 {
             picture.row_mut(y).fill([1.0, 0.0, 0.0]);
         }
         let red = exposure(&picture, 0.3);
         assert!((red.lit - 0.5).abs() < 1e-9 && (red.photopic_cd_m2 - 0.3 * 0.2126).abs() < 1e-9, "{red:?}");
-        assert!((red.scotopic_cd_m2 / red.photopic_cd_m2 - 0.2059).abs() < 1e-9);
+        assert!((red.scotopic_cd_m2 / red.photopic_cd_m2 - 0.206).abs() < 1e-9);
         picture.pixels_mut().fill([1.0; 3]);
         let white = exposure(&picture, 0.3);
         assert!((white.photopic_cd_m2 - 0.3).abs() < 1e-9 && (white.middle_cd_m2 - 0.3).abs() < 1e-9);
-        assert!((2.0..2.6).contains(&(white.scotopic_cd_m2 / white.photopic_cd_m2)), "{white:?}");
+        assert!((white.scotopic_cd_m2 / white.photopic_cd_m2 - 2.46).abs() < 0.001, "{white:?}");
     }
 
     #[test]
