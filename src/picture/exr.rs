@@ -38,7 +38,7 @@ pub fn planes(width: usize, planes: &[Vec<f32>]) -> Result<Vec<u8>, ExrError> {
 
 #[cfg(test)]
 mod tests {
-    use ::exr::prelude::{ReadChannels, ReadImage, ReadLayers, ReadSamples, read};
+    use ::exr::prelude::{ReadChannels, ReadLayers, read};
 
     use super::*;
 

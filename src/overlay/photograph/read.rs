@@ -179,15 +179,6 @@ fn check_bytes(bytes: &[u8]) -> Result<(), PhotographError> {
     if bytes.len() as u64 > MOST_BYTES { Err(PhotographError::Bytes(bytes.len() as u64)) } else { Ok(()) }
 }
 
-/// A picture alone, without a place on the sky: a map.
-///
-/// # Errors
-/// Too many bytes or pixels, or no picture.
-pub fn picture(bytes: &[u8]) -> Result<Picture, PhotographError> {
-    check_bytes(bytes)?;
-    Ok(decode(bytes)?.picture)
-}
-
 /// Text from a file, without what could move a cursor.
 fn clean(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(120).collect::<String>().trim().to_owned()
