@@ -7,6 +7,8 @@
 pub mod backend;
 /// Keys pressed, in the session's words.
 pub mod keys;
+/// A flight through a nebula.
+pub mod nebula;
 /// Raw mode and the alternate screen, given back on every way out.
 pub mod terminal;
 /// The reds, and how many of them a terminal has.

@@ -30,6 +30,8 @@ pub mod show;
 pub mod table;
 /// Numbers of three axes on the command line.
 pub mod triple;
+/// A flight in the terminal.
+pub mod view;
 
 /// What is asked of a nebula.
 #[derive(Debug, Clone, Args)]
@@ -54,6 +56,8 @@ enum Command {
     Show(show::Arguments),
     /// Make the scattering table of the thesis: light out of a voxel, by depth and angle
     Table(Box<table::Arguments>),
+    /// Fly through a volume in the terminal, in red
+    View(Box<view::Arguments>),
 }
 
 /// Answers it.
@@ -69,5 +73,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Table(arguments) => table::run(arguments),
+        Command::View(arguments) => view::run(arguments),
     }
 }

@@ -1,8 +1,9 @@
 //! Keys pressed, in the session's words.
 
 use std::io;
+use std::time::Duration;
 
-use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, read};
+use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, poll, read};
 
 use crate::app::key::{Arrow, Key};
 
@@ -31,6 +32,25 @@ pub fn next() -> io::Result<Input> {
             _ => {}
         }
     }
+}
+
+/// The next input that means something here, if one comes in time.
+///
+/// # Errors
+/// The terminal is gone.
+pub fn within(time: Duration) -> io::Result<Option<Input>> {
+    while poll(time)? {
+        match read()? {
+            Event::Key(event) => {
+                if let Some(key) = key(&event) {
+                    return Ok(Some(Input::Key(key)));
+                }
+            }
+            Event::Resize(..) => return Ok(Some(Input::Resized)),
+            _ => {}
+        }
+    }
+    Ok(None)
 }
 
 /// A key event as a key, if it is one that could mean something.

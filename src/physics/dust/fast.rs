@@ -15,7 +15,7 @@ use super::bricks::Bricks;
 use super::camera::Camera;
 use super::light::lattice::Lattice;
 use super::multiple::Field;
-use super::scene::Scene;
+use super::scene::{Scene, Star};
 use super::volume::Volume;
 
 /// Rays through shaded cells.
@@ -34,6 +34,8 @@ mod occupancy;
 mod probe;
 /// The light of each voxel towards the eye.
 mod shade;
+/// Pixels between rays.
+mod spread;
 
 pub use cast::Work;
 
@@ -43,6 +45,7 @@ use self::march::CELL;
 use self::near::Surroundings;
 use self::occupancy::Occupancy;
 use self::shade::{BANDS, Lamp, Shading, Towards};
+use self::spread::Between;
 
 /// Widest and highest frame, pixels.
 pub const LARGEST_FRAME: usize = 8192;
@@ -71,8 +74,11 @@ pub struct Quality {
     pub step: f64,
     /// A ray ends where no more than this share of the light behind comes through; 0 never.
     pub opaque: f64,
-    /// Frames are cast with rays this many pixels apart, and spread over the pixels between.
+    /// Frames are cast with rays this many pixels apart, 1 to 8, and spread over the pixels between.
     pub coarse: usize,
+    /// With rays two pixels apart: a pixel between them gets a ray of its own where its neighbours say by more than this share what it is,
+    /// see `spread`; 0 for no such rays.
+    pub refine: f64,
     /// Whether empty bricks are passed over.
     pub skip: bool,
     /// Pixels in which the error is looked for.
@@ -81,13 +87,18 @@ pub struct Quality {
 
 impl Quality {
     /// A ray for each pixel, steps of a voxel.
-    pub const FULL: Quality = Quality { step: 1.0, opaque: 1.0 / 1024.0, coarse: 1, skip: true, probes: 0 };
+    pub const FULL: Quality =
+        Quality { step: 1.0, opaque: 1.0 / 1024.0, coarse: 1, refine: 0.0, skip: true, probes: 0 };
+    /// A ray for each pixel that its neighbours do not tell, steps of a voxel.
+    pub const FLYING: Quality = Quality { coarse: 2, refine: 1.0 / 512.0, ..Quality::FULL };
     /// A ray for four pixels, steps of a voxel and a half: for keys held down.
-    pub const MOVING: Quality = Quality { step: 1.5, opaque: 1.0 / 256.0, coarse: 2, skip: true, probes: 0 };
+    pub const MOVING: Quality =
+        Quality { step: 1.5, opaque: 1.0 / 256.0, coarse: 2, refine: 0.0, skip: true, probes: 0 };
     /// A ray for 16 pixels, steps of two voxels: for slow machines.
-    pub const DRAFT: Quality = Quality { step: 2.0, opaque: 1.0 / 128.0, coarse: 4, skip: true, probes: 0 };
+    pub const DRAFT: Quality =
+        Quality { step: 2.0, opaque: 1.0 / 128.0, coarse: 4, refine: 0.0, skip: true, probes: 0 };
     /// Half steps, and nothing left out.
-    pub const EVERYTHING: Quality = Quality { step: 0.5, opaque: 0.0, coarse: 1, skip: false, probes: 0 };
+    pub const EVERYTHING: Quality = Quality { step: 0.5, opaque: 0.0, coarse: 1, refine: 0.0, skip: false, probes: 0 };
 
     fn check(&self) -> Result<(), FastError> {
         if !(0.05..=8.0).contains(&self.step) {
@@ -164,10 +175,9 @@ impl Flyer {
         let brightest = if brightest > 0.0 { brightest } else { 1.0 };
         // Radiance is intensity over a length squared.
         let scale = brightest / (grid.unit * grid.unit);
-        let strongest = scene.dust().extinction.iter().fold(0.0f64, |a, b| a.max(*b)) * grid.unit;
-        let negligible = NEGLIGIBLE / (strongest * grid.diagonal()).max(1e-30);
+        let negligible = negligible(scene, &grid);
         let mut flyer = Flyer {
-            occupancy: Occupancy::new(&grid, &bricks, negligible as f32),
+            occupancy: Occupancy::new(&grid, &bricks, negligible),
             everywhere: Occupancy::new(&grid, &bricks, -1.0),
             density: grid.pad(volume.density()),
             lamps: Vec::new(),
@@ -183,12 +193,52 @@ impl Flyer {
         Ok(flyer)
     }
 
+    /// Changes the dust's grains or the stars while flying. Stars that stay where they are keep their columns; another depth, albedo, law or
+    /// brightness costs no more than a frame. The light that has scattered more than once stays as it was until [`Flyer::glow`].
+    ///
+    /// # Errors
+    /// More than three bands.
+    pub fn change(&mut self, volume: &Volume, scene: &Scene) -> Result<(), FastError> {
+        let places = |scene: &Scene| scene.stars().iter().map(|star| star.position).collect::<Vec<_>>();
+        if places(scene) != places(&self.scene) {
+            let field = self.field.take();
+            *self = Flyer::new(volume, scene, field)?;
+            return Ok(());
+        }
+        if scene.bands() > BANDS {
+            return Err(FastError::Bands(scene.bands()));
+        }
+        let brightest = self.scale * self.grid.unit * self.grid.unit;
+        for (lamp, star) in self.lamps.iter_mut().zip(scene.stars()) {
+            lamp.power = power(scene, star, brightest);
+        }
+        if scene.dust().extinction != self.scene.dust().extinction {
+            let negligible = negligible(scene, &self.grid);
+            self.occupancy = Occupancy::new(&self.grid, &Bricks::of(volume), negligible);
+        }
+        self.scene = scene.clone();
+        self.shaded = None;
+        Ok(())
+    }
+
+    /// Takes the light that has scattered more than once.
+    pub fn glow(&mut self, field: Field) {
+        self.seen = Seen::of(&field, &self.grid);
+        self.field = Some(field);
+        self.shaded = None;
+    }
+
+    /// The scene that is seen.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// Columns from the stars to each voxel.
     fn light(&mut self, volume: &Volume, brightest: f64) {
         let (nx, ny) = (volume.size()[0], volume.size()[1]);
         let spacings = volume.size().into_iter().max().unwrap_or(1).min(FINEST_LATTICE);
         let lattice = Lattice::new(volume, self.scene.stars(), spacings, &mut |_| {});
-        let albedo = self.scene.dust().albedo;
         for (index, star) in self.scene.stars().iter().enumerate() {
             let mut columns = vec![0.0f32; volume.density().len()];
             columns.par_chunks_mut(nx).enumerate().for_each(|(row, out)| {
@@ -197,10 +247,7 @@ impl Flyer {
                     *column = (lattice.column(volume, index, place) / self.grid.unit) as f32;
                 }
             });
-            let mut power = [0.0f32; BANDS];
-            for (power, intensity) in power.iter_mut().zip(&star.intensity) {
-                *power = (albedo * intensity / brightest) as f32;
-            }
+            let power = power(&self.scene, star, brightest);
             self.lamps.push(Lamp { position: star.position / self.grid.unit, power, columns: self.grid.pad(&columns) });
         }
     }
@@ -226,11 +273,13 @@ impl Flyer {
         };
         let brightest = self.shade(towards, quality.skip);
         let coarse = quality.coarse.clamp(1, 8);
-        let (columns, rows) = (width.div_ceil(coarse), height.div_ceil(coarse));
-        let mut pixels = vec![[0.0; BANDS]; columns * rows];
-        let mut through = vec![[1.0; BANDS]; columns * rows];
+        let refine = coarse == 2 && quality.refine > 0.0;
+        let count = (width.div_ceil(coarse), height.div_ceil(coarse));
+        let first = if refine { 0.5 } else { coarse as f64 / 2.0 };
+        let mut pixels = vec![[0.0; BANDS]; count.0 * count.1];
+        let mut through = vec![[1.0; BANDS]; count.0 * count.1];
         let surroundings = self.surroundings();
-        let casting = cast::Casting {
+        let mut casting = cast::Casting {
             grid: &self.grid,
             occupancy: if quality.skip { &self.occupancy } else { &self.everywhere },
             cells: &self.cells,
@@ -238,8 +287,33 @@ impl Flyer {
             surroundings: &surroundings,
             step: quality.step,
             opaque: quality.opaque as f32,
+            middle: cast::middle(&self.grid, camera, (width, height)),
         };
-        let work = cast::cast(&casting, camera, (columns, rows), &mut pixels, &mut through);
+        let points = cast::Points { picture: (width, height), count, apart: coarse, first, wanted: None };
+        let mut work = cast::cast(&casting, camera, points, &mut pixels, &mut through);
+        // Behind dense dust everything is dark: what was ended early may outshine what is seen. Then rays go on, to a bound.
+        let seen = pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+        if quality.opaque <= FINE_OPAQUE && work.hidden * brightest > UNSEEN * seen {
+            casting.opaque = (UNSEEN * seen / brightest).min(casting.opaque);
+            pixels.fill([0.0; BANDS]);
+            through.fill([1.0; BANDS]);
+            work = cast::cast(&casting, camera, points, &mut pixels, &mut through);
+        }
+        let mut all = points;
+        let wanted;
+        if refine {
+            let typical = pixels.iter().flatten().sum::<f32>() / (3 * pixels.len()) as f32;
+            let share = quality.refine as f32;
+            let between = |points| Between { points, count };
+            let mut picture;
+            (picture, wanted) = between(&pixels).picture(width, height, share, typical);
+            let (mut clear, _) = between(&through).picture(width, height, share, 1.0);
+            all = cast::Points { count: (width, height), apart: 1, wanted: Some(&wanted), ..points };
+            work = work.with(cast::cast(&casting, camera, all, &mut picture, &mut clear));
+            (pixels, through) = (picture, clear);
+        }
+        cast::add_near(&casting, camera, all, &mut pixels);
+        let cast_size = if refine { (width, height) } else { count };
         let scale = self.scale as f32;
         pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|value| value * scale));
         let passed_over = if quality.skip {
@@ -248,8 +322,9 @@ impl Flyer {
             0.0
         };
         let left_out = (work.hidden + passed_over) * brightest * scale;
-        let mut frame = Frame { width: columns, height: rows, pixels, through, left_out, believed: None, work };
-        if coarse > 1 {
+        let mut frame =
+            Frame { width: cast_size.0, height: cast_size.1, pixels, through, left_out, believed: None, work };
+        if coarse > 1 && !refine {
             frame = spread(&frame, width, height, coarse);
         }
         if quality.probes > 0 {
@@ -315,8 +390,29 @@ impl Flyer {
     }
 }
 
+/// What a star's light is multiplied by, in the flyer's numbers.
+fn power(scene: &Scene, star: &Star, brightest: f64) -> [f32; BANDS] {
+    let mut power = [0.0; BANDS];
+    for (power, intensity) in power.iter_mut().zip(&star.intensity) {
+        *power = (scene.dust().albedo * intensity / brightest) as f32;
+    }
+    power
+}
+
+/// The density below which a brick is passed over.
+fn negligible(scene: &Scene, grid: &Grid) -> f32 {
+    let strongest = scene.dust().extinction.iter().fold(0.0f64, |a, b| a.max(*b)) * grid.unit;
+    (NEGLIGIBLE / (strongest * grid.diagonal()).max(1e-30)) as f32
+}
+
 /// Dust of less optical depth than this along the longest way through the box is passed over.
 const NEGLIGIBLE: f64 = 1e-4;
+
+/// Rays that end where less than this comes through are held to [`UNSEEN`].
+const FINE_OPAQUE: f64 = 1.0 / 1024.0;
+
+/// The share of the brightest pixel that a ray ended early may lack.
+const UNSEEN: f32 = 1.0 / 600.0;
 
 /// Steps of a probe, as shares of the frame's.
 const FINE: f64 = 0.25;

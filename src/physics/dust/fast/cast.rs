@@ -27,6 +27,48 @@ pub(super) struct Casting<'a> {
     pub(super) step: f64,
     /// A ray of which no more comes through ends.
     pub(super) opaque: f32,
+    /// The middle of the picture: its ray, and how far from it the ray of the next pixel is, at its origin and per length.
+    pub(super) middle: (Ray, f64, f64),
+}
+
+impl Casting<'_> {
+    /// The width of a pixel at a place.
+    fn pixel(&self, place: DVec3) -> f64 {
+        let (ray, origin, slope) = self.middle;
+        origin + slope * (place - ray.origin).length()
+    }
+}
+
+/// The ray through the middle of a picture, in units of the grid, and how far from it the next pixel's is.
+pub(super) fn middle(grid: &Grid, camera: &Camera, (width, height): (usize, usize)) -> (Ray, f64, f64) {
+    let ray = |x: f64| camera.ray(x, height as f64 / 2.0, width, height).map(|ray| grid.ray(&ray));
+    let half = width as f64 / 2.0;
+    match (ray(half), ray(half + 0.5)) {
+        (Some(a), Some(b)) => (a, 2.0 * (b.origin - a.origin).length(), 2.0 * (b.direction - a.direction).length()),
+        _ => (Ray { origin: DVec3::ZERO, direction: DVec3::Z }, 0.0, 0.0),
+    }
+}
+
+/// Which points of a picture rays are cast through.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a> {
+    /// Of the whole picture, pixels.
+    pub(super) picture: (usize, usize),
+    /// Points across and down.
+    pub(super) count: (usize, usize),
+    /// From one point to the next, pixels.
+    pub(super) apart: usize,
+    /// Where the first is, pixels from the left and the top.
+    pub(super) first: f64,
+    /// By point, whether it is wanted; all where this is nothing.
+    pub(super) wanted: Option<&'a [bool]>,
+}
+
+impl Points<'_> {
+    fn ray(&self, camera: &Camera, x: usize, y: usize) -> Option<Ray> {
+        let at = |n: usize| (n * self.apart) as f64 + self.first;
+        camera.ray(at(x), at(y), self.picture.0, self.picture.1)
+    }
 }
 
 /// What the rays of a frame did.
@@ -45,7 +87,7 @@ pub struct Work {
 }
 
 impl Work {
-    fn with(self, other: Work) -> Work {
+    pub(super) fn with(self, other: Work) -> Work {
         Work {
             samples: self.samples + other.samples,
             everything: self.everything + other.everything,
@@ -56,23 +98,34 @@ impl Work {
     }
 }
 
-/// One pixel's ray in units of the grid.
+/// One pixel's ray as the kernel needs it; lengths are counted from near where the bundle enters the box.
+#[derive(Clone, Copy, Default)]
 struct Lane {
-    ray: Ray,
-    enter: f64,
-    leave: f64,
     traveller: Traveller,
+    enter: f32,
+    leave: f32,
     done: bool,
 }
 
-/// Casts all rays of a picture into `pixels`, and into `through` what of the light behind comes through.
+/// One pixel's ray in units of the grid.
+#[derive(Clone, Copy)]
+struct Aim {
+    ray: Ray,
+    enter: f64,
+    leave: f64,
+    /// Its pixel in the tile.
+    pixel: usize,
+}
+
+/// Casts rays through points of a picture into `pixels`, and into `through` what of the light behind comes through.
 pub(super) fn cast(
     casting: &Casting<'_>,
     camera: &Camera,
-    (width, height): (usize, usize),
+    points: Points<'_>,
     pixels: &mut [[f32; BANDS]],
     through: &mut [[f32; BANDS]],
 ) -> Work {
+    let width = points.count.0;
     pixels
         .par_chunks_mut(TILE * width)
         .zip(through.par_chunks_mut(TILE * width))
@@ -80,7 +133,7 @@ pub(super) fn cast(
         .map(|(band, (pixels, through))| {
             let mut work = Work::default();
             for x in (0..width).step_by(TILE) {
-                let tile = Tile { x, y: band * TILE, width, height };
+                let tile = Tile { x, y: band * TILE, points };
                 work = work.with(dispatched(casting, camera, tile, pixels, through));
             }
             work
@@ -88,92 +141,166 @@ pub(super) fn cast(
         .reduce(Work::default, Work::with)
 }
 
+/// Adds what the grid cannot hold of the light close to the stars, at all points.
+pub(super) fn add_near(casting: &Casting<'_>, camera: &Camera, points: Points<'_>, pixels: &mut [[f32; BANDS]]) {
+    let (width, height) = points.count;
+    let points = Points { wanted: None, ..points };
+    pixels.par_chunks_mut(TILE * width).enumerate().for_each(|(band, pixels)| {
+        for x in (0..width).step_by(TILE) {
+            let tile = Tile { x, y: band * TILE, points };
+            let (right, bottom) = ((x + TILE - 1).min(width - 1), (tile.y + TILE - 1).min(height - 1));
+            let corners = [(x, tile.y), (right, tile.y), (x, bottom), (right, bottom)];
+            let rays = corners.map(|(x, y)| points.ray(camera, x, y).map(|ray| casting.grid.ray(&ray)));
+            // A tile on the rim of a domemaster has corners without rays: it is looked at in full.
+            let whole = rays.iter().all(Option::is_some);
+            let close =
+                if whole { close(rays.iter().flatten(), casting.lamps) } else { (0..casting.lamps.len()).collect() };
+            if close.is_empty() {
+                continue;
+            }
+            let (aims, count) = aims(casting.grid, camera, tile);
+            for aim in &aims[..count] {
+                let Some(pixel) = pixels.get_mut(aim.pixel / TILE * width + x + aim.pixel % TILE) else { continue };
+                for lamp in close.iter().filter_map(|index| casting.lamps.get(*index)) {
+                    let half = 0.5 * points.apart as f64 * casting.pixel(lamp.position);
+                    let more = casting.surroundings.missing(lamp, &aim.ray, (aim.enter, aim.leave), half);
+                    pixel.iter_mut().zip(more).for_each(|(pixel, more)| *pixel += more);
+                }
+            }
+        }
+    });
+}
+
+/// Stars that a ray between some may come close to.
+fn close<'a>(rays: impl Iterator<Item = &'a Ray> + Clone, lamps: &[Lamp]) -> Vec<usize> {
+    let count = rays.clone().count().max(1) as f64;
+    let mean = |of: fn(&Ray) -> DVec3| rays.clone().map(of).sum::<DVec3>() / count;
+    let (origin, direction) = (mean(|ray| ray.origin), mean(|ray| ray.direction));
+    let width = rays.fold((0.0f64, 0.0f64), |width, ray| {
+        (width.0.max((ray.origin - origin).length()), width.1.max((ray.direction - direction).length()))
+    });
+    let near = |lamp: &Lamp| {
+        let to = lamp.position - origin;
+        let t = to.dot(direction) / direction.length_squared().max(1e-12);
+        let passing = (to - direction * t.max(0.0)).length();
+        let reach = f64::from(REACH);
+        t > -reach && passing < reach + width.0 + width.1 * (t.max(0.0) + reach)
+    };
+    (0..lamps.len()).filter(|index| near(&lamps[*index])).collect()
+}
+
 /// Where a tile is.
 #[derive(Clone, Copy)]
-struct Tile {
+struct Tile<'a> {
     x: usize,
     y: usize,
-    width: usize,
-    height: usize,
+    points: Points<'a>,
 }
 
 type Pixels<'a> = &'a mut [[f32; BANDS]];
 
 /// One tile, with the widest vectors that the processor has.
-fn dispatched(casting: &Casting<'_>, camera: &Camera, tile: Tile, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
+fn dispatched(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
         #[expect(unsafe_code, reason = "the processor was asked whether it has these instructions")]
         return unsafe { with_avx2(casting, camera, tile, pixels, through) };
     }
-    cast_tile::<false>(casting, camera, tile, pixels, through)
+    cast_tile(casting, camera, tile, (pixels, through), march::through)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn with_avx2(casting: &Casting<'_>, camera: &Camera, tile: Tile, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
-    cast_tile::<true>(casting, camera, tile, pixels, through)
+fn with_avx2(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
+    // A closure made here may use what the processor has.
+    let kernel = |cells: Cells<'_>, traveller: &mut Traveller, stretch: Stretch, extinction| {
+        march::wide::through(cells, traveller, stretch, extinction);
+    };
+    cast_tile(casting, camera, tile, (pixels, through), kernel)
+}
+
+/// The rays of a tile that meet the box.
+fn aims(grid: &Grid, camera: &Camera, tile: Tile<'_>) -> ([Aim; PIXELS], usize) {
+    let nowhere = Aim { ray: Ray { origin: DVec3::ZERO, direction: DVec3::Z }, enter: 0.0, leave: 0.0, pixel: 0 };
+    let points = tile.points;
+    let (mut aims, mut count) = ([nowhere; PIXELS], 0);
+    for pixel in 0..PIXELS {
+        let (x, y) = (tile.x + pixel % TILE, tile.y + pixel / TILE);
+        let (columns, rows) = points.count;
+        let unwanted = || points.wanted.is_some_and(|wanted| !wanted.get(y * columns + x).copied().unwrap_or(false));
+        if x >= columns || y >= rows || unwanted() {
+            continue;
+        }
+        let Some(ray) = points.ray(camera, x, y) else { continue };
+        let ray = grid.ray(&ray);
+        let Some((enter, leave)) = crossing(grid.edges(), &ray) else { continue };
+        let enter = enter.max(0.0);
+        if enter < leave {
+            aims[count] = Aim { ray, enter, leave, pixel };
+            count += 1;
+        }
+    }
+    (aims, count)
 }
 
 #[inline(always)]
-fn cast_tile<const FUSED: bool>(
+fn cast_tile(
     casting: &Casting<'_>,
     camera: &Camera,
-    tile: Tile,
-    pixels: Pixels<'_>,
-    through: Pixels<'_>,
+    tile: Tile<'_>,
+    (pixels, through): (Pixels<'_>, Pixels<'_>),
+    kernel: impl Fn(Cells<'_>, &mut Traveller, Stretch, [f32; CELL]),
 ) -> Work {
     let grid = casting.grid;
     let mut work = Work::default();
-    let mut lanes: [Option<Lane>; PIXELS] = std::array::from_fn(|n| {
-        let (x, y) = (tile.x + n % TILE, tile.y + n / TILE);
-        if x >= tile.width || y >= tile.height {
-            return None;
-        }
-        let ray = grid.ray(&camera.ray(x as f64 + 0.5, y as f64 + 0.5, tile.width, tile.height)?);
-        let (enter, leave) = crossing(grid.edges(), &ray)?;
-        let enter = enter.max(0.0);
-        (enter < leave).then(|| Lane { ray, enter, leave, traveller: Traveller::default(), done: false })
-    });
-    let Some(bundle) = Bundle::of(grid, &lanes) else { return work };
-    let cells = Cells { values: casting.cells, row: grid.padded[0], plane: grid.padded[0] * grid.padded[1] };
-    let k = casting.surroundings.extinction;
-    let extinction = [k[0], k[1], k[2], 0.0];
-    for lane in lanes.iter_mut().flatten() {
-        // Places are counted from where the bundle enters: an eye far away costs no digits.
-        let origin = grid.index(lane.ray.origin + lane.ray.direction * bundle.enter);
-        let step = lane.ray.direction * grid.per_length();
-        lane.traveller =
-            Traveller { origin: single(origin), step: single(step), light: [0.0; CELL], through: [1.0; CELL] };
-        work.rays += 1;
-        work.everything += ((lane.leave - lane.enter) * bundle.pace / casting.step) as u64;
-    }
+    let (aims, count) = aims(grid, camera, tile);
+    let aims = &aims[..count];
+    let Some(bundle) = Bundle::of(grid, aims) else { return work };
+    let row = grid.padded[0] as u32;
+    let cells = Cells { values: casting.cells, row, plane: row * grid.padded[1] as u32 };
+    let [red, green, blue] = casting.surroundings.extinction;
+    let extinction = [red, green, blue, 0.0];
     let step = casting.step / bundle.pace;
     let length = step * LANES as f64;
-    let mut from = bundle.enter;
+    // Stretches are counted from the eye, so that neighbouring tiles sample at the same lengths.
+    let base = (bundle.enter / length).floor() * length;
+    let mut lanes = [Lane::default(); PIXELS];
+    let lanes = &mut lanes[..count];
+    for (lane, aim) in lanes.iter_mut().zip(aims) {
+        // An eye far away costs no digits.
+        let origin = grid.index(aim.ray.origin + aim.ray.direction * base);
+        let slope = aim.ray.direction * grid.per_length();
+        let traveller =
+            Traveller { origin: single(origin), step: single(slope), light: [0.0; CELL], through: [1.0; CELL] };
+        let (enter, leave) = ((aim.enter - base) as f32, (aim.leave - base) as f32);
+        *lane = Lane { traveller, enter, leave, done: false };
+        work.rays += 1;
+        work.everything += ((aim.leave - aim.enter) / step).ceil() as u64;
+    }
+    let mut from = base;
     let mut alive = work.rays;
     while from < bundle.leave && alive > 0 {
-        let free = bundle.free(casting.occupancy, from);
+        let free = (bundle.free(casting.occupancy, from.max(bundle.enter)) / length).floor();
         if free > 0.0 {
-            from += free;
+            from += free * length;
             continue;
         }
         let until = from + length;
         let densest = bundle.densest(casting.occupancy, from, until);
         if densest > 0.0 {
-            for lane in lanes.iter_mut().flatten().filter(|lane| !lane.done) {
-                let (a, b) = (from.max(lane.enter), until.min(lane.leave));
+            let (begin, end) = ((from - base) as f32, (until - base) as f32);
+            for lane in lanes.iter_mut().filter(|lane| !lane.done) {
+                let (a, b) = (begin.max(lane.enter), end.min(lane.leave));
                 if a >= b {
                     continue;
                 }
-                let whole = b - a >= length * (1.0 - 1e-9);
-                let steps = if whole { LANES } else { ((b - a) / step).ceil().max(1.0) as usize };
-                let stretch =
-                    Stretch { from: (a - bundle.enter) as f32, step: ((b - a) / steps as f64) as f32, steps, densest };
-                march::through::<FUSED>(cells, &mut lane.traveller, stretch, extinction);
+                let whole = a == begin && b == end;
+                let steps = if whole { LANES } else { ((b - a) / step as f32).ceil().clamp(1.0, 8.0) as usize };
+                let size = if whole { step as f32 } else { (b - a) / steps as f32 };
+                kernel(cells, &mut lane.traveller, Stretch { from: a, step: size, steps, densest }, extinction);
                 work.samples += steps as u64;
-                let left = lane.traveller.through;
-                let most = left[0].max(left[1]).max(left[2]);
+                let [red, green, blue, _] = lane.traveller.through;
+                let most = red.max(green).max(blue);
                 if most < casting.opaque {
                     lane.done = true;
                     alive -= 1;
@@ -184,19 +311,12 @@ fn cast_tile<const FUSED: bool>(
         }
         from = until;
     }
-    let close = bundle.close(casting.lamps);
-    for (n, lane) in lanes.iter().enumerate() {
-        let Some(lane) = lane else { continue };
-        let [mut red, mut green, mut blue, _] = lane.traveller.light;
-        for lamp in close.iter().filter_map(|index| casting.lamps.get(*index)) {
-            let pixel = 0.5 * bundle.pixel(lamp.position);
-            let more = casting.surroundings.missing(lamp, &lane.ray, (lane.enter, lane.leave), pixel);
-            (red, green, blue) = (red + more[0], green + more[1], blue + more[2]);
-        }
-        let at = n / TILE * tile.width + tile.x + n % TILE;
+    for (lane, aim) in lanes.iter().zip(aims) {
+        let at = aim.pixel / TILE * tile.points.count.0 + tile.x + aim.pixel % TILE;
         if let (Some(pixel), Some(through)) = (pixels.get_mut(at), through.get_mut(at)) {
-            *pixel = [red, green, blue];
-            *through = [0, 1, 2].map(|band| lane.traveller.through[band]);
+            // Rounding may leave a hair less than nothing behind dust without end.
+            let positive = |[red, green, blue, _]: [f32; CELL]| [red.max(0.0), green.max(0.0), blue.max(0.0)];
+            (*pixel, *through) = (positive(lane.traveller.light), positive(lane.traveller.through));
         }
     }
     work
@@ -211,12 +331,8 @@ struct Bundle {
     /// Index of the middle's origin, and indices per length.
     origin: DVec3,
     direction: DVec3,
-    /// The middle in units of the grid.
-    middle: Ray,
     /// How far the others are from the middle: at their origins, and more per length; in indices.
     apart: (f64, f64),
-    /// The same in units of the grid.
-    width: (f64, f64),
     enter: f64,
     leave: f64,
     /// Indices passed per length.
@@ -224,30 +340,25 @@ struct Bundle {
 }
 
 impl Bundle {
-    fn of(grid: &Grid, lanes: &[Option<Lane>]) -> Option<Bundle> {
-        let there = || lanes.iter().flatten();
-        let count = there().count();
-        if count == 0 {
+    fn of(grid: &Grid, aims: &[Aim]) -> Option<Bundle> {
+        if aims.is_empty() {
             return None;
         }
-        let sum = |of: fn(&Ray) -> DVec3| there().map(|lane| of(&lane.ray)).sum::<DVec3>() / count as f64;
+        let sum = |of: fn(&Ray) -> DVec3| aims.iter().map(|aim| of(&aim.ray)).sum::<DVec3>() / aims.len() as f64;
         let middle = Ray { origin: sum(|ray| ray.origin), direction: sum(|ray| ray.direction) };
         let scale = grid.per_length();
-        let (mut apart, mut width) = ((0.0f64, 0.0f64), (0.0f64, 0.0f64));
-        for lane in there() {
-            let (o, d) = (lane.ray.origin - middle.origin, lane.ray.direction - middle.direction);
+        let mut apart = (0.0f64, 0.0f64);
+        for aim in aims {
+            let (o, d) = (aim.ray.origin - middle.origin, aim.ray.direction - middle.direction);
             apart = (apart.0.max((o * scale).abs().max_element()), apart.1.max((d * scale).abs().max_element()));
-            width = (width.0.max(o.length()), width.1.max(d.length()));
         }
         Some(Bundle {
             origin: grid.index(middle.origin),
             direction: middle.direction * scale,
-            middle,
             apart,
-            width,
-            enter: there().map(|lane| lane.enter).fold(f64::INFINITY, f64::min),
-            leave: there().map(|lane| lane.leave).fold(0.0, f64::max),
-            pace: there().map(|lane| (lane.ray.direction * scale).length()).fold(1e-9, f64::max),
+            enter: aims.iter().map(|aim| aim.enter).fold(f64::INFINITY, f64::min),
+            leave: aims.iter().map(|aim| aim.leave).fold(0.0, f64::max),
+            pace: aims.iter().map(|aim| (aim.ray.direction * scale).length()).fold(1e-9, f64::max),
         })
     }
 
@@ -268,23 +379,5 @@ impl Bundle {
         let (a, b) = (self.origin + self.direction * from, self.origin + self.direction * until);
         let apart = DVec3::splat(self.apart(until));
         occupancy.densest(a.min(b) - apart, a.max(b) + apart)
-    }
-
-    /// Stars that a ray of it may come close to.
-    fn close(&self, lamps: &[Lamp]) -> Vec<usize> {
-        let near = |lamp: &Lamp| {
-            let to = lamp.position - self.middle.origin;
-            let t = to.dot(self.middle.direction) / self.middle.direction.length_squared().max(1e-12);
-            let passing = (to - self.middle.direction * t.max(0.0)).length();
-            let reach = f64::from(REACH);
-            t > -reach && passing < reach + self.width.0 + self.width.1 * (t.max(0.0) + reach)
-        };
-        (0..lamps.len()).filter(|index| near(&lamps[*index])).collect()
-    }
-
-    /// The width of a pixel at a place: the corners of a tile are 3.5 sqrt(2) pixels from its middle.
-    fn pixel(&self, place: DVec3) -> f64 {
-        let t = (place - self.middle.origin).dot(self.middle.direction).max(0.0);
-        (self.width.0 + self.width.1 * t) / (3.5 * std::f64::consts::SQRT_2)
     }
 }

@@ -5,6 +5,10 @@
 
 use super::grid::LANES;
 
+/// The kernel for processors with AVX2.
+#[cfg(target_arch = "x86_64")]
+pub(super) mod wide;
+
 /// Numbers in a cell.
 pub(super) const CELL: usize = 4;
 
@@ -15,8 +19,8 @@ const THIN: f32 = 0.25;
 #[derive(Clone, Copy)]
 pub(super) struct Cells<'a> {
     pub(super) values: &'a [[f32; CELL]],
-    pub(super) row: usize,
-    pub(super) plane: usize,
+    pub(super) row: u32,
+    pub(super) plane: u32,
 }
 
 /// A ray in indices, and what it has gathered so far.
@@ -45,66 +49,36 @@ pub(super) struct Stretch {
     pub(super) densest: f32,
 }
 
+impl Stretch {
+    /// Optical depths of a step at density 1, and whether that of each step is small.
+    #[inline(always)]
+    fn depth(&self, extinction: [f32; CELL]) -> ([f32; CELL], bool) {
+        let depth = extinction.map(|k| k * self.step);
+        (depth, depth.iter().fold(0.0f32, |a, b| a.max(*b)) * self.densest <= THIN)
+    }
+}
+
+/// Eight samples in a row.
+struct Places {
+    /// The first cell of each.
+    base: [u32; LANES],
+    /// How far in it along x.
+    across: [f32; LANES],
+    /// Shares of the four rows about it: this one, the next along y, along z, along both.
+    shares: [[f32; LANES]; 4],
+}
+
 #[inline(always)]
 fn fused<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// 1 - e^-x without loss of digits: three doublings of a = 1 - e^(-x/8) by a (2 - a).
-#[inline(always)]
-fn lost<const FUSED: bool>(x: f32) -> f32 {
-    let y = (x * 0.125).min(8.0);
-    let series = fused::<FUSED>(
-        fused::<FUSED>(fused::<FUSED>(fused::<FUSED>(-1.0 / 120.0, y, 1.0 / 24.0), -y, 1.0 / 6.0), y, -0.5),
-        y,
-        1.0,
-    );
-    let mut a = y * series;
-    for _ in 0..3 {
-        a = a * (2.0 - a);
-    }
-    a
-}
-
-/// The same for x of at most [`THIN`]: five terms.
-#[inline(always)]
-fn lost_thin<const FUSED: bool>(x: f32) -> f32 {
-    let inner = fused::<FUSED>(x, 1.0 / 24.0, -1.0 / 6.0);
-    x * fused::<FUSED>(x, fused::<FUSED>(x, -inner, -0.5), 1.0)
-}
-
-/// Takes a ray through a stretch. `extinction` is per unit of length and density, one number a band, the last 0.
-#[inline(always)]
-pub(super) fn through<const FUSED: bool>(
-    cells: Cells<'_>,
-    traveller: &mut Traveller,
-    stretch: Stretch,
-    extinction: [f32; CELL],
-) {
-    let depth = extinction.map(|k| k * stretch.step);
-    let thin = depth.iter().fold(0.0f32, |a, b| a.max(*b)) * stretch.densest <= THIN;
-    if thin {
-        samples::<FUSED, true>(cells, traveller, stretch, depth);
-    } else {
-        samples::<FUSED, false>(cells, traveller, stretch, depth);
-    }
-}
-
-#[inline(always)]
-fn samples<const FUSED: bool, const IS_THIN: bool>(
-    cells: Cells<'_>,
-    traveller: &mut Traveller,
-    stretch: Stretch,
-    depth: [f32; CELL],
-) {
-    /// Adding 2^23 leaves the nearest integer in the last bits of an f32.
-    const MAGIC: f32 = 8_388_608.0;
-    let (mut light, mut left) = (traveller.light, traveller.through);
-    let mut done = 0;
-    while done < stretch.steps {
-        let mut base = [0u32; LANES];
-        let mut across = [0.0f32; LANES];
-        let mut weights = [[0.0f32; LANES]; 4];
+impl Places {
+    #[inline(always)]
+    fn of<const FUSED: bool>(cells: Cells<'_>, traveller: &Traveller, stretch: Stretch, done: usize) -> Places {
+        /// Adding 2^23 leaves the nearest integer in the last bits of an f32.
+        const MAGIC: f32 = 8_388_608.0;
+        let mut places = Places { base: [0; LANES], across: [0.0; LANES], shares: [[0.0; LANES]; 4] };
         for k in 0..LANES {
             let t = fused::<FUSED>((done + k) as f32 + 0.5, stretch.step, stretch.from);
             let place = |axis: usize| fused::<FUSED>(t, traveller.step[axis], traveller.origin[axis]);
@@ -112,48 +86,90 @@ fn samples<const FUSED: bool, const IS_THIN: bool>(
             let (x, y, z) = (place(0), place(1), place(2));
             let (i, j, l) = (floor(x), floor(y), floor(z));
             let index = |f: f32| f.to_bits().wrapping_sub(MAGIC.to_bits());
-            base[k] = index(i)
-                .wrapping_add(index(j).wrapping_mul(cells.row as u32))
-                .wrapping_add(index(l).wrapping_mul(cells.plane as u32));
-            across[k] = x - (i - MAGIC);
+            places.base[k] = index(i)
+                .wrapping_add(index(j).wrapping_mul(cells.row))
+                .wrapping_add(index(l).wrapping_mul(cells.plane));
+            places.across[k] = x - (i - MAGIC);
             let (v, w) = (y - (j - MAGIC), z - (l - MAGIC));
-            weights[3][k] = v * w;
-            weights[2][k] = w - v * w;
-            weights[1][k] = v - v * w;
-            weights[0][k] = 1.0 - v - w + v * w;
+            places.shares[3][k] = v * w;
+            places.shares[2][k] = w - v * w;
+            places.shares[1][k] = v - v * w;
+            places.shares[0][k] = 1.0 - v - w + v * w;
         }
+        places
+    }
+}
+
+/// 1 - e^-x without loss of digits: three doublings of a = 1 - e^(-x/8) by a (2 - a).
+#[inline(always)]
+fn lost(x: f32) -> f32 {
+    let y = (x * 0.125).min(8.0);
+    let series = 1.0 + y * (-0.5 + y * (1.0 / 6.0 + y * (-1.0 / 24.0 + y * (1.0 / 120.0))));
+    let mut a = y * series;
+    for _ in 0..3 {
+        a = a * (2.0 - a);
+    }
+    a
+}
+
+/// The same for x of at most [`THIN`].
+#[inline(always)]
+fn lost_thin(x: f32) -> f32 {
+    x + x * x * (-0.5 + x * (1.0 / 6.0 - x * (1.0 / 24.0)))
+}
+
+/// Takes a ray through a stretch. `extinction` is per unit of length and density, one number a band, the last 0.
+#[inline(always)]
+pub(super) fn through(cells: Cells<'_>, traveller: &mut Traveller, stretch: Stretch, extinction: [f32; CELL]) {
+    let (depth, thin) = stretch.depth(extinction);
+    if thin {
+        samples(cells, traveller, stretch, depth, lost_thin);
+    } else {
+        samples(cells, traveller, stretch, depth, lost);
+    }
+}
+
+#[inline(always)]
+fn samples(
+    cells: Cells<'_>,
+    traveller: &mut Traveller,
+    stretch: Stretch,
+    depth: [f32; CELL],
+    lost: impl Fn(f32) -> f32,
+) {
+    let (row, plane) = (cells.row as usize, cells.plane as usize);
+    let (mut light, mut left) = (traveller.light, traveller.through);
+    for done in (0..stretch.steps).step_by(LANES) {
+        let places = Places::of::<false>(cells, traveller, stretch, done);
         let now = (stretch.steps - done).min(LANES);
         let mut met = [[0.0f32; CELL]; LANES];
         let mut taken = [[0.0f32; CELL]; LANES];
         for k in 0..now {
-            let at = base[k] as usize;
-            let corners = [at, at + cells.row, at + cells.plane, at + cells.plane + cells.row];
+            let at = places.base[k] as usize;
             let mut both = [[0.0f32; CELL]; 2];
-            for (corner, weight) in corners.into_iter().zip(weights) {
+            for (corner, share) in [at, at + row, at + plane, at + plane + row].into_iter().zip(places.shares) {
                 let (Some(second), Some(first)) = (cells.values.get(corner + 1), cells.values.get(corner)) else {
                     continue;
                 };
                 for n in 0..CELL {
-                    both[0][n] = fused::<FUSED>(first[n], weight[k], both[0][n]);
-                    both[1][n] = fused::<FUSED>(second[n], weight[k], both[1][n]);
+                    both[0][n] += first[n] * share[k];
+                    both[1][n] += second[n] * share[k];
                 }
             }
             for n in 0..CELL {
-                met[k][n] = fused::<FUSED>(across[k], both[1][n] - both[0][n], both[0][n]);
+                met[k][n] = both[0][n] + places.across[k] * (both[1][n] - both[0][n]);
             }
             for n in 0..CELL {
-                let x = depth[n] * met[k][CELL - 1];
-                taken[k][n] = if IS_THIN { lost_thin::<FUSED>(x) } else { lost::<FUSED>(x) };
+                taken[k][n] = lost(depth[n] * met[k][CELL - 1]);
             }
         }
         for k in 0..now {
             for n in 0..CELL {
                 let taken = taken[k][n] * left[n];
-                light[n] = fused::<FUSED>(taken, met[k][n], light[n]);
+                light[n] += taken * met[k][n];
                 left[n] -= taken;
             }
         }
-        done += LANES;
     }
     traveller.light = light;
     traveller.through = left;
