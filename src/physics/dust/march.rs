@@ -82,6 +82,8 @@ pub struct March<'a> {
     pub model: &'a dyn Scattering,
     /// Light of its own.
     pub emission: Option<Emission<'a>>,
+    /// The most density anywhere: how fast its shadows can deepen along a ray.
+    pub densest: f64,
     /// How fine.
     pub fineness: Fineness,
     /// When to end early; never, if nothing is said.
@@ -108,6 +110,8 @@ pub struct Tally {
     pub rays: u64,
     /// Points at which the source was computed.
     pub sources: u64,
+    /// Ways through bricks that may hold dust.
+    pub ways: u64,
     /// Cells gone through with dust in them.
     pub cells: u64,
     /// Stretches passed over, no dust being in them.
@@ -120,6 +124,7 @@ impl std::ops::AddAssign for Tally {
     fn add_assign(&mut self, other: Tally) {
         self.rays += other.rays;
         self.sources += other.sources;
+        self.ways += other.ways;
         self.cells += other.cells;
         self.empty += other.empty;
         self.ended += other.ended;
@@ -229,6 +234,7 @@ impl<'a> Walker<'a> {
         if self.over {
             return;
         }
+        self.tally.ways += 1;
         let (volume, ray) = (self.march.volume, self.ray);
         cells::walk(volume, ray, from, to, |cell| {
             self.over = !self.cell(cell);
@@ -284,7 +290,9 @@ impl<'a> Walker<'a> {
     /// Begins a piece: it may be as long as the step, and from no star look longer than the angle.
     fn begin(&mut self, at: f64) {
         let fine = self.march.fineness;
-        let mut allowed = fine.step * self.voxel;
+        // Shadows of dense dust elsewhere change along a ray through thin dust too.
+        let shadow = (2.0 * fine.depth / (self.steepest * self.march.densest)).max(self.voxel / 32.0);
+        let mut allowed = (fine.step * self.voxel).min(shadow);
         for (along, passes) in self.stars.iter().take(self.march.scene.stars().len()) {
             let distance = (at - along).hypot(*passes);
             // The piece may go towards the star: its far end is what counts, but not less than where the ray passes.

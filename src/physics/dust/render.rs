@@ -66,6 +66,13 @@ pub struct Subject<'a> {
     pub emission: Option<Emission<'a>>,
 }
 
+impl Subject<'_> {
+    /// The most density anywhere.
+    fn densest(&self) -> f64 {
+        self.volume.density().par_iter().copied().reduce(|| 0.0, f32::max).into()
+    }
+}
+
 /// How it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wish {
@@ -136,6 +143,7 @@ pub fn render(subject: &Subject<'_>, view: &View, wish: &Wish, told: &mut dyn Fn
         scene: subject.scene,
         model: if wish.everything { subject.exact } else { subject.model },
         emission: subject.emission,
+        densest: subject.densest(),
         fineness: plan.fineness,
         enough: (!wish.everything).then_some(&enough),
         bricks: (!wish.everything).then_some(&bricks),

@@ -7,7 +7,9 @@ use crate::physics::dust::scene::MOST_BANDS;
 /// Most rays for one pixel.
 const MOST_RAYS: u64 = 2000;
 /// Most rays for a pixel with a star behind it.
-const MOST_STAR_RAYS: u64 = 8000;
+const MOST_STAR_RAYS: u64 = 3000;
+/// Of what rays of a part differ by, so much is believed to be error even where sums agree: kinks may hide between rays.
+const UNSEEN: f64 = 3e-3;
 /// A pixel whose curvature is more than so many tolerances has 16 rays at once.
 const STRONGLY: f64 = 3.0;
 /// Nearer to a star's image than this, pixels, the neighbours are not asked whether one ray is enough.
@@ -62,6 +64,8 @@ struct Patch {
     integral: [f64; MOST_BANDS],
     column: f64,
     error: [f64; MOST_BANDS],
+    /// How much the four rays differ, as an integral: of that, [`UNSEEN`] is error at least, whatever agrees by chance.
+    spread: [f64; MOST_BANDS],
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -152,7 +156,9 @@ impl<'a> Sampler<'a> {
             [above, Some(row), below].into_iter().flatten().any(|row| row[from..=to].iter().any(|pixel| pixel.met));
         let centre = (x as f64 + 0.5, y as f64 + 0.5);
         let outside = self.view.camera.ray(centre.0, centre.1, self.view.width, self.view.height).is_none();
-        if outside || !met && self.view.width > 1 {
+        // Where the middle goes through bricks that hold dust but meets none, a corner of the pixel may.
+        let may_hide = !middle.met && middle.tally.ways > 0;
+        if outside || !met && !may_hide && self.view.width > 1 {
             return (middle.clone(), Kind::Missed);
         }
         let star = self.stars.iter().any(|(sx, sy)| (sx - centre.0).hypot(sy - centre.1) < NEAR_STAR);
@@ -174,16 +180,16 @@ impl<'a> Sampler<'a> {
             }
             let scale = |band: usize| middle.radiance[band].max(self.floor[band]);
             let error = (0..self.floor.len()).map(|band| bent[band] / scale(band)).fold(0.0, f64::max);
-            if error <= 0.25 * self.wish.tolerance && !star && !self.wish.everything {
+            if error <= 0.25 * self.wish.tolerance && !star && !may_hide && !self.wish.everything {
                 corrected.error = error;
                 return (corrected, Kind::OneRay);
             }
         }
-        self.many(&corrected, &bent, star, x, y)
+        self.many(&corrected, &bent, star || may_hide, x, y)
     }
 
     /// Parts of the pixel, the worst of which is quartered until the sum is good enough.
-    fn many(&self, middle: &Pixel, bent: &[f64; MOST_BANDS], star: bool, x: usize, y: usize) -> (Pixel, Kind) {
+    fn many(&self, middle: &Pixel, bent: &[f64; MOST_BANDS], unknown: bool, x: usize, y: usize) -> (Pixel, Kind) {
         let mut tally = middle.tally;
         let whole = Shape::Square { x: x as f64, y: y as f64, width: 1.0, height: 1.0 };
         let mut shapes = Vec::new();
@@ -195,9 +201,12 @@ impl<'a> Sampler<'a> {
         // Where it is bent by many tolerances, four rays and the middle may agree by chance.
         let scale = |band: usize| middle.radiance[band].max(self.floor[band]);
         let strongly = (0..bands).any(|band| bent[band] > STRONGLY * self.wish.tolerance * scale(band));
-        if let ([whole], false) = (&mut patches[..], star || strongly || self.wish.everything) {
+        if let ([whole], false) = (&mut patches[..], unknown || strongly || self.wish.everything) {
             for (band, least) in bent.iter().enumerate().take(bands) {
-                whole.error[band] = (whole.integral[band] - middle.radiance[band]).abs().max(0.2 * least);
+                whole.error[band] = (whole.integral[band] - middle.radiance[band])
+                    .abs()
+                    .max(0.2 * least)
+                    .max(UNSEEN * whole.spread[band]);
             }
         } else {
             patches = patches.iter().flat_map(|patch| self.quarter(patch, &mut tally)).collect();
@@ -266,16 +275,26 @@ impl<'a> Sampler<'a> {
 
     /// The integral over a part by 2 x 2 nodes; its error is not known yet.
     fn patch(&self, shape: Shape, tally: &mut Tally) -> Patch {
-        let mut patch = Patch { shape, integral: [0.0; MOST_BANDS], column: 0.0, error: [0.0; MOST_BANDS] };
-        for p in GAUSS {
-            for q in GAUSS {
-                let (x, y, area) = shape.place(p, q);
-                let (radiance, column) = self.sample((x, y), tally);
-                patch.column += 0.25 * area * column;
-                for (sum, value) in patch.integral.iter_mut().zip(&radiance[..self.floor.len()]) {
-                    *sum += 0.25 * area * value;
-                }
+        let mut patch = Patch {
+            shape,
+            integral: [0.0; MOST_BANDS],
+            column: 0.0,
+            error: [0.0; MOST_BANDS],
+            spread: [0.0; MOST_BANDS],
+        };
+        let mut four = [[0.0; MOST_BANDS]; 4];
+        for (node, parts) in four.iter_mut().enumerate() {
+            let (x, y, area) = shape.place(GAUSS[node & 1], GAUSS[node >> 1]);
+            let (radiance, column) = self.sample((x, y), tally);
+            patch.column += 0.25 * area * column;
+            for (band, value) in radiance.iter().enumerate().take(self.floor.len()) {
+                parts[band] = 0.25 * area * value;
+                patch.integral[band] += parts[band];
             }
+        }
+        for band in 0..self.floor.len() {
+            let mean = 0.25 * patch.integral[band];
+            patch.spread[band] = four.iter().map(|parts| (parts[band] - mean).abs()).sum();
         }
         patch
     }
@@ -287,7 +306,7 @@ impl<'a> Sampler<'a> {
         for band in 0..self.floor.len() {
             let sum: f64 = parts.iter().map(|part| part.integral[band]).sum();
             for part in &mut parts {
-                part.error[band] = (sum - whole.integral[band]).abs() / 12.0;
+                part.error[band] = ((sum - whole.integral[band]).abs() / 12.0).max(UNSEEN * part.spread[band]);
             }
         }
         parts

@@ -94,10 +94,10 @@ impl Plan {
     }
 }
 
-/// Rays of some of the picture's pixels that meet the box.
+/// Rays of some places of the picture that meet the box.
 fn probes(volume: &Volume, view: &View, seed: u64) -> Vec<Ray> {
     let mut stream = Stream::seeded(seed);
-    let mut place = |side: usize| (stream.uniform() * side as f64).floor() + 0.5;
+    let mut place = |side: usize| stream.uniform() * side as f64;
     let places = PLACES.min(64 * view.width * view.height);
     (0..places)
         .filter_map(|_| view.camera.ray(place(view.width), place(view.height), view.width, view.height))
@@ -120,6 +120,7 @@ fn gather(
         scene: subject.scene,
         model,
         emission: subject.emission,
+        densest: subject.densest(),
         fineness,
         enough: Some(enough),
         bricks: None,

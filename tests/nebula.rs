@@ -1,0 +1,251 @@
+//! Pictures of lit dust, held against other people's numbers, against formulas, and against the laws that light obeys.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use glam::{DQuat, DVec3};
+use scotopic::physics::dust::camera::{Camera, Lens};
+use scotopic::physics::dust::drawing::{Drawing, Light};
+use scotopic::physics::dust::march::Emission;
+use scotopic::physics::dust::phase::HenyeyGreenstein;
+use scotopic::physics::dust::render::{Rendered, View, Wish};
+use scotopic::physics::dust::scene::{Dust, Scene, Star};
+use scotopic::physics::dust::volume::Volume;
+
+const WISH: Wish = Wish { tolerance: 5e-3, step: None, everything: false, seed: 1 };
+
+fn scene(extinction: &[f64], albedo: f64, g: f64, stars: &[DVec3]) -> Scene {
+    let dust = Dust { extinction: extinction.to_vec(), albedo, phase: HenyeyGreenstein::new(g).unwrap() };
+    let star = |position: &DVec3| Star { position: *position, intensity: vec![1.0; extinction.len()] };
+    Scene::new(dust, stars.iter().map(star).collect()).unwrap()
+}
+
+fn view(eye: DVec3, at: DVec3, lens: Lens, width: usize, height: usize) -> View {
+    View { camera: Camera::looking(eye, at, DVec3::Y, lens).unwrap(), width, height, near: 0.0 }
+}
+
+fn from_above(width: usize, height: usize) -> View {
+    view(DVec3::Z * 4.0, DVec3::ZERO, Lens::Orthographic { width: 2.0 }, width, height)
+}
+
+fn draw(volume: &Volume, scene: &Scene, view: &View, wish: &Wish) -> Rendered {
+    let mut drawing = Drawing::new(volume, scene, Light::Single, None);
+    drawing.prepare(view, wish, &mut |_| ());
+    drawing.draw(view, wish, &mut |_| ())
+}
+
+/// Even dust of density 1 in a box from -1 to 1.
+fn even(side: usize) -> Volume {
+    Volume::new([side; 3], DVec3::splat(2.0), vec![1.0; side * side * side]).unwrap()
+}
+
+/// Uneven dust with a hole and empty corners.
+fn uneven(side: usize) -> Volume {
+    let density = |index: usize| {
+        let at = |i: usize| (i as f64 + 0.5) / side as f64 * 2.0 - 1.0;
+        let place = DVec3::new(at(index % side), at(index / side % side), at(index / side / side));
+        let shape = 1.0 + 0.8 * (5.0 * place.x + 3.0 * place.y).sin() * (4.0 * place.z - 2.0 * place.x).cos();
+        let r = place.length();
+        if r > 0.95 { 0.0 } else { (shape * ((r - 0.2) / 0.2).clamp(0.0, 1.0)) as f32 }
+    };
+    Volume::new([side; 3], DVec3::splat(2.0), (0..side.pow(3)).map(density).collect()).unwrap()
+}
+
+fn fixture(name: &str) -> Vec<f32> {
+    let path = format!("fixtures/reference/mitsuba/{name}.npy");
+    let bytes = std::fs::read(path).unwrap();
+    scotopic::picture::npy::read(&mut bytes.as_slice(), bytes.len() as u64).unwrap().values
+}
+
+#[test]
+fn single_scattering_is_that_of_an_independent_quadrature() {
+    for (name, extinction, star) in
+        [("sphere", 1.0, DVec3::ZERO), ("radial", 5.0, DVec3::ZERO), ("noise", 4.0, DVec3::new(0.15, 0.1, -0.2))]
+    {
+        let volume = Volume::new([32; 3], DVec3::splat(2.0), fixture(&format!("grid_{name}_32"))).unwrap();
+        let scene = scene(&[extinction], 0.6, 0.6, &[star]);
+        let view = from_above(64, 64);
+        let got = draw(&volume, &scene, &view, &WISH);
+        let reference = fixture(&format!("{name}_k{extinction}_a0.6_g0.6_ortho_singlequad"));
+        let (x, y) = view.camera.place(star, 64, 64).unwrap();
+        let mut errors: Vec<f64> = (0..64 * 64)
+            .filter(|i| reference[*i] > 0.0)
+            .filter(|i| ((i % 64) as f64 + 0.5 - x).hypot((i / 64) as f64 + 0.5 - y) > 3.0)
+            .map(|i| (f64::from(got.radiance[0][i]) / f64::from(reference[i]) - 1.0).abs())
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        // Asked: a median of 0.5 %. The reference's own steps make some 0.1 %.
+        let median = errors[errors.len() / 2];
+        assert!(median < 2e-3 && errors[errors.len() * 9 / 10] < 6e-3, "{name}: median {median}");
+        let (sum, truth) = (got.radiance[0].iter().sum::<f32>(), reference.iter().sum::<f32>());
+        assert!((sum / truth - 1.0).abs() < 0.01, "{name}: {sum} {truth}");
+    }
+}
+
+#[test]
+fn the_pixel_of_a_star_in_thin_dust_has_the_average_that_an_integral_gives() {
+    // L(b) = albedo kappa / (4 pi) 2 atan(1/b)/b at a distance b from the star, by the length of the box; over a square of half side a
+    // the average of 2 atan(1/b)/b = pi/b - 2 + 2 b^2/3 - ... is [8 pi a ln(1 + sqrt 2) - 8 a^2 + 16/9 a^4] / (4 a^2).
+    let extinction = 1e-6;
+    let scene = scene(&[extinction], 0.5, 0.0, &[DVec3::ZERO]);
+    let got = draw(&even(4), &scene, &from_above(17, 17), &Wish { tolerance: 1e-3, ..WISH });
+    let a = 1.0f64 / 17.0;
+    let average = (8.0 * std::f64::consts::PI * a * (1.0 + 2f64.sqrt()).ln() - 8.0 * a * a + 16.0 / 9.0 * a.powi(4))
+        / (4.0 * a * a);
+    let truth = 0.5 * extinction / (4.0 * std::f64::consts::PI) * average;
+    let pixel = f64::from(got.radiance[0][8 * 17 + 8]);
+    assert!((pixel / truth - 1.0).abs() < 2e-3, "{pixel} {truth}");
+    // A star on the corner of four pixels is seen alike in them.
+    let got = draw(&even(4), &scene, &from_above(16, 16), &WISH);
+    let around = [7 * 16 + 7, 7 * 16 + 8, 8 * 16 + 7, 8 * 16 + 8].map(|i| got.radiance[0][i]);
+    assert!(around.iter().all(|pixel| (pixel / around[0] - 1.0).abs() < 1e-3), "{around:?}");
+}
+
+#[test]
+fn what_comes_through_even_dust_is_beer_and_lamberts() {
+    let scene = scene(&[0.5, 3.0, 400.0], 0.0, 0.0, &[DVec3::ZERO]);
+    let got = draw(&even(5), &scene, &from_above(3, 3), &WISH);
+    for (through, depth) in got.through.iter().zip([1.0f64, 6.0, 800.0]) {
+        assert!(through.iter().all(|share| (f64::from(*share) - (-depth).exp()).abs() < 1e-6), "{through:?}");
+    }
+    assert!(got.radiance.iter().flatten().all(|value| *value == 0.0), "black dust scatters nothing");
+}
+
+#[test]
+fn a_glow_in_thin_dust_is_its_strength_times_the_way_and_dust_before_it_takes_its_share() {
+    let (dust, glow) = (even(3), even(2));
+    for (extinction, truth) in [(1e-9, 6.0), (2.0, 3.0 * (1.0 - (-4.0f64).exp()) / 2.0)] {
+        let scene = scene(&[extinction], 0.0, 0.0, &[]);
+        let emission = Emission { volume: &glow, bands: &[3.0] };
+        let view = from_above(2, 2);
+        let got = Drawing::new(&dust, &scene, Light::Single, Some(emission)).draw(&view, &WISH, &mut |_| ());
+        assert!((f64::from(got.radiance[0][0]) / truth - 1.0).abs() < 5e-3, "{} {truth}", got.radiance[0][0]);
+    }
+}
+
+#[test]
+fn without_dust_there_is_only_what_is_behind() {
+    let volume = Volume::new([6; 3], DVec3::splat(2.0), vec![0.0; 216]).unwrap();
+    for lens in [Lens::Orthographic { width: 2.0 }, Lens::Perspective { field: 1.0 }, Lens::Domemaster { field: 3.1 }] {
+        let got =
+            draw(&volume, &scene(&[4.0], 0.6, 0.6, &[DVec3::ZERO]), &view(DVec3::Z, DVec3::ZERO, lens, 9, 7), &WISH);
+        assert!(got.radiance[0].iter().all(|value| *value == 0.0) && got.through[0].iter().all(|share| *share == 1.0));
+    }
+}
+
+#[test]
+fn two_stars_add_up_and_two_in_one_place_are_twice_one() {
+    let volume = uneven(12);
+    let (a, b) = (DVec3::new(0.1, 0.0, 0.05), DVec3::new(-0.4, 0.5, 1.6));
+    let view = view(DVec3::new(1.5, 1.0, 2.0), DVec3::ZERO, Lens::Perspective { field: 0.8 }, 20, 20);
+    let of = |stars: &[DVec3]| draw(&volume, &scene(&[2.0], 0.6, 0.6, stars), &view, &WISH).radiance.remove(0);
+    let (first, second, both, twice) = (of(&[a]), of(&[b]), of(&[a, b]), of(&[a, a]));
+    let mean = both.iter().sum::<f32>() / both.len() as f32;
+    for i in 0..both.len() {
+        let near = |x: f32, y: f32| (x - y).abs() <= 2.0 * 5e-3 * y.max(0.02 * mean);
+        assert!(near(first[i] + second[i], both[i]), "pixel {i}: {} + {} is not {}", first[i], second[i], both[i]);
+        assert!(near(2.0 * first[i], twice[i]), "pixel {i}: twice {} is not {}", first[i], twice[i]);
+    }
+}
+
+#[test]
+fn rotating_scene_and_camera_together_changes_nothing() {
+    // A quarter turn about y takes the grid onto itself: (x, y, z) -> (z, y, -x).
+    let side = 10;
+    let volume = uneven(side);
+    let old = volume.density();
+    let turned = (0..side.pow(3)).map(|index| {
+        let (x, y, z) = (index % side, index / side % side, index / side / side);
+        // The new place x, z was the old place (-z, x).
+        old[(x * side + y) * side + (side - 1 - z)]
+    });
+    let turned = Volume::new([side; 3], DVec3::splat(2.0), turned.collect()).unwrap();
+    let turn = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    let (star, eye, at) = (DVec3::new(0.1, 0.2, -0.3), DVec3::new(1.4, 0.8, 1.9), DVec3::new(0.1, 0.0, 0.0));
+    let lens = Lens::Perspective { field: 0.9 };
+    let before = draw(&volume, &scene(&[3.0], 0.6, 0.6, &[star]), &view(eye, at, lens, 24, 16), &WISH);
+    let after =
+        draw(&turned, &scene(&[3.0], 0.6, 0.6, &[turn * star]), &view(turn * eye, turn * at, lens, 24, 16), &WISH);
+    for (a, b) in before.radiance[0].iter().zip(&after.radiance[0]) {
+        assert!((a - b).abs() <= 1e-4 * a.max(1e-6), "{a} {b}");
+    }
+    assert!(before.radiance[0].iter().any(|value| *value > 0.0));
+}
+
+#[test]
+fn light_scattered_once_takes_the_same_way_back() {
+    // All light scattered once from a star at A that reaches B is, by reciprocity, that from a star at B reaching A: the radiance over the
+    // whole sphere, summed over solid angle.
+    let volume = uneven(10);
+    let (a, b) = (DVec3::new(0.35, -0.2, 0.3), DVec3::new(-0.5, 0.3, 0.1));
+    let fluence = |star: DVec3, eye: DVec3| {
+        let size = 64;
+        let lens = Lens::Domemaster { field: std::f64::consts::TAU };
+        let view = view(eye, eye + (star - eye).any_orthonormal_vector(), lens, size, size);
+        let got = draw(&volume, &scene(&[3.0], 0.6, 0.6, &[star]), &view, &Wish { tolerance: 1e-2, ..WISH });
+        (0..size * size)
+            .map(|i| {
+                let (x, y) = ((i % size) as f64 + 0.5, (i / size) as f64 + 0.5);
+                let half = size as f64 / 2.0;
+                let angle = (x - half).hypot(y - half) / half * std::f64::consts::PI;
+                let solid = (std::f64::consts::PI / half).powi(2) * angle.sin().max(0.0) / angle;
+                f64::from(got.radiance[0][i]) * solid
+            })
+            .sum::<f64>()
+    };
+    let (there, back) = (fluence(a, b), fluence(b, a));
+    assert!(there > 0.0 && (there / back - 1.0).abs() < 0.01, "{there} {back}");
+}
+
+#[test]
+fn what_is_left_out_is_within_a_512th_in_every_pixel() {
+    let volume = uneven(10);
+    let scene = scene(&[2.5, 4.0], 0.6, 0.6, &[DVec3::new(0.1, 0.05, 0.0)]);
+    let wish = Wish { tolerance: 1e-3, ..WISH };
+    for view in
+        [from_above(16, 16), view(DVec3::new(0.4, 0.2, 0.5), DVec3::ZERO, Lens::Domemaster { field: 3.3 }, 14, 14)]
+    {
+        let quick = draw(&volume, &scene, &view, &wish);
+        let slow = draw(&volume, &scene, &view, &Wish { everything: true, ..wish });
+        assert!(quick.explained.tally.sources < slow.explained.tally.sources / 2);
+        for (quick, slow) in quick.radiance.iter().zip(&slow.radiance) {
+            let mean = slow.iter().sum::<f32>() / slow.len() as f32;
+            for (i, (quick, slow)) in quick.iter().zip(slow).enumerate() {
+                let most = slow.max(0.01 * mean) / 512.0;
+                assert!((quick - slow).abs() <= most, "pixel {i}: {quick} {slow}");
+            }
+        }
+        assert!(quick.explained.worst <= 2e-3, "{:?}", quick.explained);
+    }
+}
+
+#[test]
+fn a_picture_has_the_same_bits_on_one_thread_and_on_many() {
+    let volume = uneven(9);
+    let scene = scene(&[2.0, 3.0, 4.0], 0.6, 0.6, &[DVec3::new(0.2, 0.0, 0.0)]);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| draw(&volume, &scene, &from_above(20, 45), &Wish { tolerance: 2e-2, ..WISH }))
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn the_near_plane_cuts_the_dust_before_it_away() {
+    let scene = scene(&[1.0], 0.6, 0.0, &[DVec3::new(0.0, 0.0, -0.9)]);
+    let whole = from_above(2, 2);
+    let cut = View { near: 4.0, ..whole };
+    let (all, half) = (draw(&even(4), &scene, &whole, &WISH), draw(&even(4), &scene, &cut, &WISH));
+    assert!((half.through[0][0] - (-1.0f32).exp()).abs() < 1e-6 && (all.through[0][0] - (-2.0f32).exp()).abs() < 1e-6);
+    // Without the near half in the way, the far half is brighter.
+    assert!(half.radiance[0][0] > all.radiance[0][0]);
+}
+
+#[test]
+fn thin_dust_twice_as_dense_is_twice_as_bright() {
+    let volume = uneven(8);
+    let of = |extinction| draw(&volume, &scene(&[extinction], 0.6, 0.6, &[DVec3::ZERO]), &from_above(8, 8), &WISH);
+    let (once, twice) = (of(1e-6), of(2e-6));
+    for (a, b) in once.radiance[0].iter().zip(&twice.radiance[0]) {
+        assert!((2.0 * a - b).abs() <= 1e-5 * b, "{a} {b}");
+    }
+}
