@@ -50,7 +50,7 @@ fn sun_moon_and_planets_stand_within_three_arcseconds_of_the_reference() {
         assert!(off < 1.5, "{body} {utc}: {off:.3} arcseconds");
         assert!((place.distance_au - number(au)).abs() < 1e-4 * number(au), "{body} {utc}: {} au", place.distance_au);
         // From 2026 on the reference turned its sites by another delta T than the row's: half a minute of the Moon's parallax.
-        if *utc > *"2026" && body == "Moon" {
+        if utc.as_str() > "2026" && body == "Moon" {
             continue;
         }
         let site = Site::new(number(lat), number(lon), number(elev)).unwrap();
