@@ -14,6 +14,8 @@ pub mod eye;
 pub mod files;
 /// Frames along a camera path.
 pub mod fly;
+/// The thesis' figures, made again.
+pub mod gallery;
 /// A nebula out of nothing.
 pub mod generate;
 /// Pictures in files.
@@ -46,6 +48,8 @@ enum Command {
     Develop(develop::Arguments),
     /// Make frames along a camera path; any number of machines share them out
     Fly(Box<fly::Arguments>),
+    /// Make the thesis' pictures of nebulae again, each with its command lines
+    Gallery(gallery::Arguments),
     /// Make a volume of dust: noise in a shape, swept clean around the stars
     Generate(Box<generate::Arguments>),
     /// Follow photons through a sphere of even dust
@@ -65,9 +69,15 @@ enum Command {
 /// # Errors
 /// A sentence that says what is wrong and what to do.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.command {
+    execute(&arguments.command)
+}
+
+/// Answers one command.
+fn execute(command: &Command) -> Result<(), Failure> {
+    match command {
         Command::Develop(arguments) => develop::run(arguments),
         Command::Fly(arguments) => fly::run(arguments),
+        Command::Gallery(arguments) => gallery::run(arguments),
         Command::Generate(arguments) => generate::run(arguments),
         Command::Photons(arguments) => photons::run(arguments),
         Command::Render(arguments) => render::run(arguments),

@@ -9,6 +9,8 @@ use crate::picture::Picture;
 
 /// Faintest to brightest star of a field.
 const RANGE: f64 = 1000.0;
+/// Every so many-th star is on the sheet that an eye with parallel rays sees: as many as in a view of about 45 degrees.
+const SHEET: usize = 25;
 /// Radius of a star's image, pixels (of a Gaussian).
 const BLUR_PX: f64 = 0.6;
 
@@ -42,9 +44,12 @@ impl StarField {
     pub fn draw(&self, camera: &Camera, width: usize, height: usize) -> Vec<[f32; 3]> {
         let mut pixels = vec![[0.0; 3]; width * height];
         let parallel = camera.parallel().is_some();
-        for (direction, light) in &self.stars {
+        let stars = self.stars.iter().step_by(if parallel { SHEET } else { 1 });
+        for (direction, light) in stars {
             let place = if parallel {
-                Some(((direction.x + 1.0) * 0.5 * width as f64, (direction.y + 1.0) * 0.5 * height as f64))
+                // Lambert's cylinder: even on the sphere is even on the sheet.
+                let turn = direction.x.atan2(direction.z) / std::f64::consts::TAU + 0.5;
+                Some((turn * width as f64, (direction.y + 1.0) * 0.5 * height as f64))
             } else {
                 camera.place(camera.eye() + *direction, width, height)
             };
@@ -112,6 +117,19 @@ mod tests {
             let ratio = lit(&other) as f64 / lit(&one) as f64;
             assert!((0.9..1.1).contains(&ratio), "{ratio}");
             assert_ne!(other, one);
+        }
+    }
+
+    #[test]
+    fn parallel_rays_see_a_sheet_that_is_even_to_its_corners() {
+        let camera = Camera::looking(DVec3::Z, DVec3::ZERO, DVec3::Y, Lens::Orthographic { width: 2.0 }).unwrap();
+        let sheet = StarField::seeded(3, 40_000).draw(&camera, 90, 90);
+        let lit = |column: usize, row: usize| {
+            let rows = (0..30).flat_map(|y| sheet[(row + y) * 90 + column..][..30].iter());
+            rows.filter(|pixel| pixel[1] > 2e-4).count() as f64
+        };
+        for (column, row) in [(0, 0), (60, 0), (0, 60), (60, 60)] {
+            assert!((0.75..1.25).contains(&(lit(column, row) / lit(30, 30))), "{column} {row}");
         }
     }
 
