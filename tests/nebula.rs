@@ -241,6 +241,43 @@ fn the_near_plane_cuts_the_dust_before_it_away() {
 }
 
 #[test]
+fn extreme_scenes_give_light_that_is_a_number() {
+    let centre = even(4).centre(1, 1, 1);
+    let stars = [centre, DVec3::new(0.0, 0.0, 0.0), DVec3::new(1.0, 0.2, 0.1), DVec3::new(0.3, 5.0, -2.0)];
+    let coarse = Wish { tolerance: 0.1, ..WISH };
+    let sound = |volume: &Volume, scene: &Scene, view: &View, what: &str| {
+        let got = draw(volume, scene, view, &coarse);
+        for value in got.radiance.iter().chain(&got.through).flatten() {
+            assert!(value.is_finite() && *value >= 0.0, "{what}: {value}");
+        }
+        assert!(got.explained.worst.is_finite() && got.explained.mean.is_finite(), "{what}");
+        got.radiance.iter().flatten().map(|value| f64::from(*value)).sum::<f64>()
+    };
+    let inside = |eye: DVec3| view(eye, eye - DVec3::Z, Lens::Perspective { field: 1.5 }, 2, 2);
+    for (extinction, g, star) in [
+        (2e-6, 0.0, stars[0]),
+        (2e-6, 0.999_999, stars[3]),
+        (2.0, 1e-6, stars[1]),
+        (2.0, -0.999_999, stars[2]),
+        (2.0, 0.999_999, stars[0]),
+        (2e3, 0.6, stars[0]),
+        (2e3, 0.999_999, stars[2]),
+    ] {
+        // Two identical stars in one place; a band without extinction.
+        let scene = scene(&[extinction, 0.0], 1.0, g, &[star, star]);
+        let what = format!("extinction {extinction}, g {g}, star {star}");
+        // From outside along an axis, the star on the view's axis; within the dust; on the star.
+        sound(&even(4), &scene, &from_above(2, 2), &what);
+        sound(&uneven(6), &scene, &inside(DVec3::new(0.3, 0.1, 0.4)), &what);
+        sound(&even(4), &scene, &inside(star), &what);
+    }
+    let one = Volume::new([1; 3], DVec3::new(1.0, 2.0, 0.5), vec![1.0]).unwrap();
+    assert!(sound(&one, &scene(&[1.0], 1.0, 0.5, &[DVec3::ZERO]), &from_above(1, 1), "one voxel, one pixel") > 0.0);
+    // Dust a thousand deep lets nothing of a star in its middle out.
+    assert!(sound(&even(4), &scene(&[1e3], 1.0, 0.6, &[DVec3::ZERO]), &from_above(3, 3), "dense") < 1e-100);
+}
+
+#[test]
 fn thin_dust_twice_as_dense_is_twice_as_bright() {
     let volume = uneven(8);
     let of = |extinction| draw(&volume, &scene(&[extinction], 0.6, 0.6, &[DVec3::ZERO]), &from_above(8, 8), &WISH);

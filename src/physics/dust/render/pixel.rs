@@ -212,7 +212,7 @@ impl<'a> Sampler<'a> {
             patches = patches.iter().flat_map(|patch| self.quarter(patch, &mut tally)).collect();
         }
         let most = if starred { MOST_STAR_RAYS } else { MOST_RAYS };
-        let wanted = if self.wish.everything { 0.1 } else { 0.5 } * self.wish.tolerance;
+        let wanted = if self.wish.everything { 0.3 } else { 0.5 } * self.wish.tolerance;
         loop {
             let mut pixel =
                 Pixel { radiance: [0.0; MOST_BANDS], column: 0.0, error: 0.0, given_up: false, tally, met: middle.met };
