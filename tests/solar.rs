@@ -48,7 +48,8 @@ fn sun_moon_and_planets_stand_within_three_arcseconds_of_the_reference() {
         let place = ephemeris.place(Body::from_name(body).unwrap());
         let off = place.apparent.separation(&of_date(ra, dec)).to_arcseconds();
         assert!(off < 1.5, "{body} {utc}: {off:.3} arcseconds");
-        assert!((place.distance_au - number(au)).abs() < 1e-4 * number(au), "{body} {utc}: {} au", place.distance_au);
+        // The reference's vector has aberration in its length too: up to v/c = 1.01e-4. Without it Swiss Ephemeris agrees to 1e-5.
+        assert!((place.distance_au - number(au)).abs() < 1.1e-4 * number(au), "{body} {utc}: {} au", place.distance_au);
         // From 2026 on the reference turned its sites by another delta T than the row's: half a minute of the Moon's parallax.
         if utc.as_str() > "2026" && body == "Moon" {
             continue;
@@ -192,9 +193,9 @@ fn the_textbooks_examples_come_out() {
 /// Io's orbit is 5.9 radii wide: Jupiter and its shadow take 2 asin(1 / 5.9) of the turn, 5.4 %.
 #[test]
 fn io_is_hidden_and_eclipsed_for_a_twentieth_of_its_turns() {
-    let steps = 400;
+    let steps = 340;
     let (mut hidden, mut eclipsed) = (0, 0);
-    // Four days and four hours, two turns and a third of 42.46 hours, in steps of a quarter of an hour.
+    // Two turns of 42.46 hours, in steps of a quarter of an hour.
     let start = Utc::from_rfc3339("2026-11-14T00:00:00Z").unwrap();
     for step in 0..steps {
         let ephemeris = Ephemeris::at(&Moment::at(start.plus_seconds(f64::from(step) * 900.0))).unwrap();

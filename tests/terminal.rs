@@ -221,7 +221,7 @@ fn a_session_searches_slews_arrives_stops_and_quits_and_the_terminal_is_as_it_wa
     session.press("s/");
     session.wait_for("go to:");
     session.press("vega");
-    session.wait_for("star in Lyr");
+    session.wait_for("in         Lyr");
     session.press("\r");
     session.wait_for("SLEWING");
     // The stop works while typing, too.
