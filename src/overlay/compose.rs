@@ -434,8 +434,9 @@ fn names(
     let mut by_light: Vec<&FieldStar> = scene.found.stars.iter().collect();
     by_light.sort_by(|a, b| a.v_mag.total_cmp(&b.v_mag));
     for star in by_light.into_iter().take(4 * MOST_NAMES) {
-        let Some((x, y)) = view.projection.pixel(&stars::place(star, field.years)) else { continue };
-        if !view.region.contains(x, y) {
+        let place = stars::place(star, field.years);
+        let Some((x, y)) = view.projection.pixel(&place) else { continue };
+        if !view.region.contains(x, y) || behind(scene, &place) {
             continue;
         }
         let radius = f64::from(stars::sigma_px(star.v_mag) * 1.6);

@@ -4,7 +4,7 @@ use super::kind::Kind;
 use crate::eye::Patch;
 use crate::sky::astrometry::Astrometry;
 use crate::sky::coords::{Equatorial, J2000};
-use crate::sky::ephemeris::InView;
+use crate::sky::ephemeris::{Body, InView};
 use crate::units::{Angle, Magnitude, SurfaceBrightness};
 
 /// The band in which a magnitude was measured.
@@ -85,6 +85,7 @@ impl Object {
     pub fn type_words(&self) -> &'static str {
         match (self.kind, self.hubble) {
             (Kind::Galaxy, Some(hubble)) => galaxy_words(hubble),
+            (Kind::SolarSystem, _) => Body::from_name(&self.name).map_or(self.kind.words(), Body::type_words),
             (kind, _) => kind.words(),
         }
     }
