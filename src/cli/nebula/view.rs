@@ -140,8 +140,12 @@ impl Flying {
         self.stale = false;
         self.gathering = Some(result);
         std::thread::spawn(move || {
+            // On a thread of its own: the frames have the others.
+            let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let field =
+                alone.ok().and_then(|alone| alone.install(|| multiple::gather(&volume, &scene, &settings)).ok());
             // Nobody listens any more when the flight is over.
-            let _ = done.send(multiple::gather(&volume, &scene, &settings).ok());
+            let _ = done.send(field);
         });
     }
 
