@@ -300,9 +300,11 @@ impl Flying {
             frames += 1;
         }
         let rate = f64::from(frames) / began.elapsed().as_secs_f64();
+        // Finds the white that the words speak of.
+        drop(self.developed(&last));
         note(&self.words(&last));
         crate::cli::answer(&format!(
-            "{rate:.2} frames a second, {} x {} pixels, {} stars, quality {}\n",
+            "{rate:.2} frames a second, {} x {} pixels, {} stars, quality {}",
             self.size.0,
             self.size.1,
             self.said.stars().len(),
