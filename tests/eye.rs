@@ -2,25 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::process::{Command, Output};
+#[path = "common/script.rs"]
+mod script;
 
+use script::{json, scotopic};
 use serde_json::Value;
-
-fn scotopic(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_scotopic"))
-        .args(arguments)
-        // No profile of the person who runs the tests.
-        .env("XDG_CONFIG_HOME", std::env::temp_dir().join("scotopic-no-such-profile"))
-        .env("HOME", std::env::temp_dir().join("scotopic-no-such-home"))
-        .output()
-        .unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = scotopic(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
 
 fn number(answer: &Value, key: &str) -> f64 {
     answer[key].as_f64().unwrap()

@@ -3,48 +3,18 @@
 #![cfg(unix)]
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::io::{BufRead, BufReader, Read, Write};
+#[path = "common/mount.rs"]
+mod mount;
+
+use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::Duration;
 
-/// A process that does not outlive its test.
-struct Ended(Child);
-
-impl Drop for Ended {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-fn scotopic(arguments: &[&str]) -> Command {
-    let home = std::env::temp_dir().join(format!("scotopic-mount-stop-{}", std::process::id()));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_scotopic"));
-    command.args(arguments).stdin(Stdio::null());
-    for folder in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"] {
-        command.env(folder, &home);
-    }
-    command
-}
+use mount::{mount, scotopic};
 
 fn stop(mount: &str) -> Output {
-    scotopic(&["mount", "stop", "--mount", mount, "--json"]).output().expect("the program")
-}
-
-/// A simulated mount, and its address.
-fn mount() -> (Ended, String) {
-    let mut child = scotopic(&["simulate", "mount", "--listen", "tcp:127.0.0.1:0", "--site", "60.17,24.94,30"])
-        .args(["--time", "2026-11-22T22:00:00Z"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("a mount");
-    let mut first = String::new();
-    BufReader::new(child.stdout.take().expect("its output")).read_line(&mut first).expect("its address");
-    let said: serde_json::Value = serde_json::from_str(&first).expect("JSON");
-    (Ended(child), said["endpoint"].as_str().expect("an endpoint").to_owned())
+    scotopic(&["mount", "stop", "--mount", mount, "--json"]).stderr(Stdio::piped()).output().expect("the program")
 }
 
 /// Asks the mount over a connection of our own; the answer has `length` bytes, or ends with `#`.
@@ -61,9 +31,10 @@ fn ask(line: &mut TcpStream, question: &str, length: usize) -> String {
 
 #[test]
 fn a_slew_that_was_left_behind_is_stopped_and_the_mount_is_seen_to_stand_still() {
-    let (_mount, address) = mount();
+    let (_mount, host) = mount();
+    let address = format!("tcp:{host}");
     let open = || {
-        let line = TcpStream::connect(address.trim_start_matches("tcp:")).expect("the mount serves one client");
+        let line = TcpStream::connect(&host).expect("the mount serves one client");
         line.set_read_timeout(Some(Duration::from_secs(10))).expect("a timeout");
         line
     };

@@ -2,31 +2,20 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "common/reference.rs"]
+mod reference;
+
 use proptest::prelude::*;
+use reference::{number, of_date, rows};
 use scotopic::physics::refraction::{self, Air};
 use scotopic::sky::astrometry::{self, Astrometry, Reduction};
 use scotopic::sky::catalogue::{Catalogue, constellation};
-use scotopic::sky::coords::{Airless, Equatorial, Horizontal, OfDate};
+use scotopic::sky::coords::{Airless, Equatorial, Horizontal};
 use scotopic::sky::horizon::{self, Horizon};
 use scotopic::sky::site::Site;
 use scotopic::sky::sun;
 use scotopic::sky::time::{Moment, Utc};
 use scotopic::units::Angle;
-
-/// The cells of a fixture, header left out.
-fn rows(name: &str) -> Vec<Vec<String>> {
-    let path = format!("{}/fixtures/reference/{name}", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
-}
-
-fn number(cell: &str) -> f64 {
-    cell.parse().unwrap()
-}
-
-fn of_date(ra: &str, dec: &str) -> Equatorial<OfDate> {
-    Equatorial::new(Angle::degrees(number(ra)), Angle::degrees(number(dec)))
-}
 
 fn airless(az: &str, alt: &str) -> Horizontal<Airless> {
     Horizontal::new(Angle::degrees(number(az)), Angle::degrees(number(alt)))

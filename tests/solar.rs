@@ -2,29 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "common/reference.rs"]
+mod reference;
+
 use proptest::prelude::*;
-use scotopic::sky::coords::{Equatorial, OfDate};
+use reference::{number, of_date, rows};
 use scotopic::sky::ephemeris::{Body, Ephemeris, moons};
 use scotopic::sky::horizon::Horizon;
 use scotopic::sky::physical::{Aspect, Rotation};
 use scotopic::sky::site::Site;
 use scotopic::sky::time::{Moment, Utc};
-use scotopic::units::Angle;
-
-/// The cells of a fixture, header left out.
-fn rows(name: &str) -> Vec<Vec<String>> {
-    let path = format!("{}/fixtures/reference/{name}", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
-}
-
-fn number(cell: &str) -> f64 {
-    cell.parse().unwrap()
-}
-
-fn of_date(ra: &str, dec: &str) -> Equatorial<OfDate> {
-    Equatorial::new(Angle::degrees(number(ra)), Angle::degrees(number(dec)))
-}
 
 fn at(utc: &str, delta_t_s: f64) -> Ephemeris {
     Ephemeris::at(&Moment { utc: Utc::from_rfc3339(utc).unwrap(), delta_t_s }).unwrap()

@@ -3,19 +3,11 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
-use serde_json::Value;
+#[path = "common/script.rs"]
+mod script;
 
-fn scotopic(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_scotopic")).args(arguments).output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = scotopic(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+use script::{json, scotopic};
 
 /// A folder of this test's own, empty.
 fn folder(name: &str) -> PathBuf {

@@ -4,53 +4,22 @@
 #![cfg(unix)]
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::io::{BufRead, BufReader, Read, Write};
+#[path = "common/mount.rs"]
+mod mount;
+
+use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::process::{Child, Command, Stdio};
+use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use mount::{Ended, mount, scotopic};
 use rustix::process::{Pid, Signal, kill_process};
 use scotopic::hw::supervisor::vigil::{STOP, STOPS};
 
 /// No step takes so long on the slowest machine that is meant.
 const PATIENCE: Duration = Duration::from_secs(90);
-
-/// A process that does not outlive its test.
-struct Ended(Child);
-
-impl Drop for Ended {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-fn scotopic(arguments: &[&str]) -> Command {
-    let home = std::env::temp_dir().join(format!("scotopic-supervised-{}", std::process::id()));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_scotopic"));
-    command.args(arguments).stdin(Stdio::null()).stderr(Stdio::null());
-    for folder in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"] {
-        command.env(folder, &home);
-    }
-    command
-}
-
-/// A simulated mount, and its address.
-fn mount() -> (Ended, String) {
-    let mut child = scotopic(&["simulate", "mount", "--listen", "tcp:127.0.0.1:0", "--site", "60.17,24.94,30"])
-        .args(["--time", "2026-11-22T22:00:00Z"])
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("a mount");
-    let mut first = String::new();
-    BufReader::new(child.stdout.take().expect("its output")).read_line(&mut first).expect("its address");
-    let said: serde_json::Value = serde_json::from_str(&first).expect("JSON");
-    let endpoint = said["endpoint"].as_str().expect("an endpoint");
-    (Ended(child), endpoint.trim_start_matches("tcp:").to_owned())
-}
 
 /// A relay for one client: its address, and all that the client's side has sent. It ends when no one holds the client's
 /// socket any more, the supervisor included.

@@ -10,10 +10,7 @@ use crate::physics::air::presets;
 use crate::physics::air::profile::{Profile, Row};
 use crate::physics::air::us76;
 use crate::physics::colour::Tone;
-use crate::physics::refraction::ray::exact::Exact;
-use crate::physics::sun::irradiance::Spectrum;
-use crate::physics::sun::limb::Law;
-use crate::physics::sun::scene::{Haze, SUN_RADIUS};
+use crate::physics::sun::scene::Haze;
 use crate::physics::sun::{Explained, Scene, View, everything, render};
 use crate::units::Angle;
 
@@ -61,27 +58,14 @@ pub fn shown(name: &str) -> Result<Shown, StudyError> {
 /// A scene in clean air, a square picture of 40 arcminutes, to 0.1 arcsecond.
 #[must_use]
 pub fn scene(profile: &Profile, observer_height_m: f64, sun_arcmin: f64, side: usize, bottom_arcmin: f64) -> Scene<'_> {
-    Scene {
-        profile,
-        observer_height_m,
-        earth_radius_m: 6_371_000.0,
-        top_m: 1e5,
-        sun_altitude: Angle::arcminutes(sun_arcmin),
-        sun_radius: SUN_RADIUS,
-        haze: None,
-        ozone_du: 0.0,
-        spectrum: Spectrum::Kurucz,
-        limb: Law::NeckelLabs,
-        view: View {
-            width: side,
-            height: side,
-            bottom: Angle::arcminutes(bottom_arcmin),
-            pixel: Angle::arcminutes(FIELD_ARCMIN / side as f64),
-        },
-        wavelengths: Some(WAVELENGTHS),
-        tolerance: Angle::arcseconds(0.1),
-        method: &Exact,
-    }
+    let view = View {
+        width: side,
+        height: side,
+        bottom: Angle::arcminutes(bottom_arcmin),
+        pixel: Angle::arcminutes(FIELD_ARCMIN / side as f64),
+    };
+    let clear = Scene::clear(profile, observer_height_m, Angle::arcminutes(sun_arcmin), view);
+    Scene { wavelengths: Some(WAVELENGTHS), ..clear }
 }
 
 /// What the omega sunset cost.

@@ -6,6 +6,7 @@ use crate::physics::aerosol::climate::{AerosolError, Climate};
 use crate::physics::aerosol::components::Humidity;
 use crate::physics::air::profile::Profile;
 use crate::physics::ozone::OzoneError;
+use crate::physics::refraction::ray::exact::Exact;
 use crate::physics::refraction::ray::{MediumError, Method, RayError};
 use crate::physics::skylight::SkyError;
 use crate::units::Angle;
@@ -135,7 +136,29 @@ pub enum SceneError {
     Tolerance(f64),
 }
 
-impl Scene<'_> {
+impl<'a> Scene<'a> {
+    /// A scene in clean air with nothing asked for: rays traced exactly through air that ends at 100 km, to 0.1 arcsecond, in 8 wavelengths as in
+    /// the thesis.
+    #[must_use]
+    pub fn clear(profile: &'a Profile, observer_height_m: f64, sun_altitude: Angle, view: View) -> Scene<'a> {
+        Scene {
+            profile,
+            observer_height_m,
+            earth_radius_m: 6_371_000.0,
+            top_m: 1e5,
+            sun_altitude,
+            sun_radius: SUN_RADIUS,
+            haze: None,
+            ozone_du: 0.0,
+            spectrum: Spectrum::Kurucz,
+            limb: Law::NeckelLabs,
+            view,
+            wavelengths: Some(8),
+            tolerance: Angle::arcseconds(0.1),
+            method: &Exact,
+        }
+    }
+
     /// Whether such a picture can be made.
     ///
     /// # Errors

@@ -16,27 +16,13 @@ fn scene(
     bottom_arcmin: f64,
     field_arcmin: f64,
 ) -> Scene<'_> {
-    Scene {
-        profile,
-        observer_height_m,
-        earth_radius_m: 6_371_000.0,
-        top_m: 1e5,
-        sun_altitude: Angle::arcminutes(sun_arcmin),
-        sun_radius: SUN_RADIUS,
-        haze: None,
-        ozone_du: 0.0,
-        spectrum: super::super::irradiance::Spectrum::Kurucz,
-        limb: super::super::limb::Law::NeckelLabs,
-        view: View {
-            width: size,
-            height: size,
-            bottom: Angle::arcminutes(bottom_arcmin),
-            pixel: Angle::arcminutes(field_arcmin / size as f64),
-        },
-        wavelengths: Some(8),
-        tolerance: Angle::arcseconds(0.1),
-        method: &Exact,
-    }
+    let view = View {
+        width: size,
+        height: size,
+        bottom: Angle::arcminutes(bottom_arcmin),
+        pixel: Angle::arcminutes(field_arcmin / size as f64),
+    };
+    Scene::clear(profile, observer_height_m, Angle::arcminutes(sun_arcmin), view)
 }
 
 fn still() -> Duration {
