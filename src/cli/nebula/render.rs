@@ -115,6 +115,7 @@ struct Made {
     rendered: Rendered,
     prepared: Option<Prepared>,
     model_error: f64,
+    leaves_out: Option<&'static str>,
     name: &'static str,
     time: Duration,
 }
@@ -265,7 +266,14 @@ impl Arguments {
         let mut bar = Bar::new(if wish.everything { "the picture, nothing left out" } else { "the picture" });
         let rendered = drawing.draw(view, wish, &mut |share| shown(&mut bar, share));
         bar.end();
-        Made { rendered, prepared, model_error: drawing.model_error(), name: drawing.name(), time: begin.elapsed() }
+        Made {
+            rendered,
+            prepared,
+            model_error: drawing.model_error(),
+            leaves_out: drawing.leaves_out(),
+            name: drawing.name(),
+            time: begin.elapsed(),
+        }
     }
 
     /// One picture for each number of scatterings.

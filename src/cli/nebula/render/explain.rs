@@ -56,7 +56,10 @@ impl Facts<'_> {
             self.seconds() + self.light_time.as_secs_f64(),
         );
         if self.made.model_error > 0.0 {
-            text += &format!("; the model's own error {:.1} %", 100.0 * self.made.model_error);
+            text += &format!("; the model's own noise and rounding {:.1} %", 100.0 * self.made.model_error);
+        }
+        if let Some(what) = self.made.leaves_out {
+            text += &format!("\n{what}");
         }
         if let Some((worst, quick)) = self.against {
             text += &format!(
@@ -152,6 +155,7 @@ impl Facts<'_> {
             "believed_error_mean": e.mean,
             "believed_error_rays": e.worst_ray,
             "believed_error_model": self.made.model_error,
+            "model_leaves_out": self.made.leaves_out,
             "pixels_lit": e.lit,
             "pixels_one_ray": e.one_ray,
             "pixels_missed": e.missed,
