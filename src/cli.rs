@@ -12,6 +12,8 @@ use self::settings::Settings;
 
 /// A folder of the observer's animations.
 pub mod animations;
+/// How the projected sky lies on the seen one.
+pub mod calibrate;
 /// The catalogue files that are built into the program.
 pub mod catalogue;
 /// What the observer can see.
@@ -104,6 +106,8 @@ enum Command {
     Overlay(Box<overlay::Arguments>),
     /// Drive the projector by itself: its light, test patterns
     Projector(Box<projector::Arguments>),
+    /// Measure how the projected sky lies on the seen one
+    Calibrate(Box<calibrate::Arguments>),
     /// Rank what is worth showing now, by what this telescope and eye can see
     Tonight(Box<tonight::Arguments>),
     /// Say what the telescope shows with each eyepiece
@@ -154,6 +158,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
         Some(Command::Projector(arguments)) => projector::run(&arguments),
+        Some(Command::Calibrate(arguments)) => calibrate::run(&arguments, &Settings::load(None)?),
         Some(Command::Tonight(arguments)) => tonight::run(&arguments, &Settings::load(None)?),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Sun(arguments)) => sun::run(&arguments),

@@ -25,6 +25,8 @@ pub mod physics;
 pub mod picture;
 /// One frame of data from the mount to the eyepiece: the page to read.
 pub mod pipeline;
+/// How the projected sky lies on the seen one, measured from photographs of the Moon; the drive's periodic error.
+pub mod registration;
 /// What methods cost and what errors they make, measured.
 pub mod report;
 /// May the telescope move there: the Sun, the limits, the turns of the cable.
