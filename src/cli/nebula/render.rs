@@ -63,6 +63,9 @@ pub struct Arguments {
     /// What comes through from behind, 0 to 1, for each band: to lay the nebula over a picture
     #[arg(long, value_name = "FILE")]
     through: Option<PathBuf>,
+    /// The believed relative error of each pixel, one plane
+    #[arg(long, value_name = "FILE")]
+    errors: Option<PathBuf>,
     /// One picture for each number of scatterings, up to N (the last holds all that follow): FILE-1, FILE-2, ...
     #[arg(long, value_name = "N")]
     orders: Option<usize>,
@@ -125,7 +128,7 @@ struct Made {
 /// # Errors
 /// The volume or the scene cannot be, or a file could not be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for path in arguments.out.iter().chain(&arguments.through) {
+    for path in arguments.out.iter().chain(&arguments.through).chain(&arguments.errors) {
         out::check_ending(path)?;
     }
     let said = arguments.scene.document()?;
@@ -153,8 +156,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // With everything, the picture is the slow one, and the quick one is held against it.
     let (made, against) = if arguments.everything {
         let slow = arguments.draw(Drawing::new(&volume, &scene, light, emission), &view, &wish);
-        let difference = explain::difference(&made.rendered, &slow.rendered);
-        (slow, Some((difference, made.time)))
+        let against = explain::difference(&made, &slow);
+        (slow, Some(against))
     } else {
         (made, None)
     };
@@ -166,6 +169,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(path) = &arguments.through {
         out::save(path, made.rendered.width, &made.rendered.through, &out::Look { white: Some(1.0), gamma: None })?;
+        files.push(path.display().to_string());
+    }
+    if let Some(path) = &arguments.errors {
+        let errors = std::slice::from_ref(&made.rendered.believed);
+        out::save(path, made.rendered.width, errors, &out::Look::default())?;
         files.push(path.display().to_string());
     }
     if !arguments.quiet {

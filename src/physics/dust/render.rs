@@ -18,7 +18,7 @@ mod pixel;
 /// How fine the rays must be, found out on some of them.
 pub mod plan;
 
-use pixel::{Pixel, Sampler};
+use pixel::{MARGIN, Pixel, Sampler};
 use plan::Plan;
 
 /// Longest side of a picture, pixels.
@@ -126,6 +126,8 @@ pub struct Rendered {
     pub radiance: Vec<Vec<f32>>,
     /// 1 where nothing is in the way.
     pub through: Vec<Vec<f32>>,
+    /// Believed relative error of each pixel, its average's and its rays' (see [`Wish::tolerance`] for what it is relative to).
+    pub believed: Vec<f32>,
     /// How it came about.
     pub explained: Explained,
 }
@@ -156,19 +158,19 @@ pub fn render(subject: &Subject<'_>, view: &View, wish: &Wish, told: &mut dyn Fn
         height: view.height,
         radiance: vec![vec![0.0; pixels]; bands],
         through: vec![vec![1.0; pixels]; bands],
+        believed: vec![0.0; pixels],
         explained: plan.explained(),
     };
     let (mut sum, mut error) = (0u64, 0.0);
-    // One ray a pixel, with a row above and below: a strip begins with the last two rows of the one before.
+    // One ray a pixel, with some rows above and below: a strip begins with the last ones of the one before.
     let mut rows: Vec<Vec<Pixel>> = Vec::new();
     for top in (0..view.height).step_by(STRIP) {
         let bottom = (top + STRIP).min(view.height);
-        let first = top.saturating_sub(1);
-        let last = (bottom + 1).min(view.height);
-        let known = rows.len();
-        rows.par_extend((first + known..last).into_par_iter().map(|y| sampler.middles(y)));
+        let first = top as isize - MARGIN as isize + rows.len() as isize;
+        let last = (bottom + MARGIN) as isize;
+        rows.par_extend((first..last).into_par_iter().map(|y| sampler.middles(y)));
         let done: Vec<Vec<(Pixel, pixel::Kind)>> =
-            (top..bottom).into_par_iter().map(|y| sampler.averages(&rows, first, y)).collect();
+            (top..bottom).into_par_iter().map(|y| sampler.averages(&rows[y - top..=y - top + 2 * MARGIN], y)).collect();
         for (y, row) in (top..bottom).zip(&done) {
             for (x, (pixel, kind)) in row.iter().enumerate() {
                 let at = y * view.width + x;
@@ -179,6 +181,7 @@ pub fn render(subject: &Subject<'_>, view: &View, wish: &Wish, told: &mut dyn Fn
                 }
                 let explained = &mut rendered.explained;
                 explained.tally += pixel.tally;
+                rendered.believed[at] = (pixel.error + explained.worst_ray) as f32;
                 if pixel.is_lit(bands) {
                     sum += 1;
                     error += pixel.error;
@@ -193,7 +196,7 @@ pub fn render(subject: &Subject<'_>, view: &View, wish: &Wish, told: &mut dyn Fn
                 explained.given_up += u64::from(pixel.given_up);
             }
         }
-        rows.drain(..rows.len().saturating_sub(2));
+        rows.drain(..rows.len() - 2 * MARGIN);
         told(bottom as f64 / view.height as f64);
     }
     let explained = &mut rendered.explained;

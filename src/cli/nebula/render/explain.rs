@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use super::Made;
+use crate::physics::dust::develop;
 use crate::physics::dust::multiple::field::Told;
 use crate::physics::dust::render::{Rendered, View, Wish};
 
@@ -15,7 +16,7 @@ pub(super) struct Facts<'a> {
     pub(super) wish: &'a Wish,
     pub(super) told: Option<Told>,
     pub(super) light_time: Duration,
-    pub(super) against: Option<(f64, Duration)>,
+    pub(super) against: Option<Against>,
     pub(super) files: &'a [String],
 }
 
@@ -25,16 +26,30 @@ pub(super) fn means(rendered: &Rendered) -> Vec<f64> {
     rendered.radiance.iter().map(mean).collect()
 }
 
-/// The largest relative difference of a pixel; of those darker than a hundredth of the picture's mean, against that.
-pub(super) fn difference(quick: &Rendered, slow: &Rendered) -> f64 {
-    let mut worst = 0.0f64;
-    for ((quick, slow), mean) in quick.radiance.iter().zip(&slow.radiance).zip(means(slow)) {
+/// How far the quick picture is from the one that leaves nothing out, in the worst pixel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Against {
+    /// As a share of the pixel's own light; of those darker than a hundredth of the picture's mean, of that.
+    pub(super) own: f64,
+    /// As a share of the picture's white, as `.png` has it where nothing is said.
+    pub(super) white: f64,
+    /// What the quick picture took.
+    pub(super) quick: Duration,
+}
+
+/// Holds the quick picture against the slow one.
+pub(super) fn difference(quick: &Made, slow: &Made) -> Against {
+    let white = develop::white_of(&develop::pixels(&slow.rendered.radiance));
+    let mut against = Against { own: 0.0, white: 0.0, quick: quick.time };
+    let planes = quick.rendered.radiance.iter().zip(&slow.rendered.radiance);
+    for ((quick, slow), mean) in planes.zip(means(&slow.rendered)) {
         for (quick, slow) in quick.iter().zip(slow) {
             let (quick, slow) = (f64::from(*quick), f64::from(*slow));
-            worst = worst.max((quick - slow).abs() / slow.max(0.01 * mean).max(1e-300));
+            against.own = against.own.max((quick - slow).abs() / slow.max(0.01 * mean).max(1e-300));
+            against.white = against.white.max((quick - slow).abs() / white);
         }
     }
-    worst
+    against
 }
 
 impl Facts<'_> {
@@ -61,13 +76,15 @@ impl Facts<'_> {
         if let Some(what) = self.made.leaves_out {
             text += &format!("\n{what}");
         }
-        if let Some((worst, quick)) = self.against {
+        if let Some(Against { own, white, quick }) = self.against {
             text += &format!(
-                "\nnothing left out: {:.1} s, {:.0} times as long; the quick picture is within {:.5} of it in every pixel (1/512 is {:.5})",
+                "\nnothing left out: {:.1} s, {:.0} times as long; the quick picture is within {:.5} of white of it in every pixel (1/512 is {:.5}), and within {:.5} of\n\
+                 the pixel's own light (of a hundredth of the mean, where it is darker)",
                 self.seconds(),
                 self.seconds() / quick.as_secs_f64().max(1e-9),
-                worst,
-                1.0 / 512.0
+                white,
+                1.0 / 512.0,
+                own
             );
         }
         if e.given_up > 0 {
@@ -172,8 +189,9 @@ impl Facts<'_> {
             "scattered_before": self.told,
             "light_s": self.light_time.as_secs_f64(),
             "picture_s": self.seconds(),
-            "everything_worst_difference": self.against.map(|(worst, _)| worst),
-            "quick_picture_s": self.against.map(|(_, time)| time.as_secs_f64()),
+            "everything_worst_difference": self.against.map(|against| against.own),
+            "everything_worst_difference_of_white": self.against.map(|against| against.white),
+            "quick_picture_s": self.against.map(|against| against.quick.as_secs_f64()),
         })
     }
 }

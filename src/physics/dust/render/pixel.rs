@@ -10,10 +10,23 @@ const MOST_RAYS: u64 = 2000;
 const MOST_STAR_RAYS: u64 = 3000;
 /// Of what rays of a part differ by, so much is believed to be error even where sums agree: kinks may hide between rays.
 const UNSEEN: f64 = 3e-3;
+/// Of a part's spread, where the light is not smooth at its scale.
+const STEP: f64 = 0.25;
+/// Of the whole's spread (an integral, as a quarter's is: an eighth is smooth, a quarter a step): what is not smooth.
+const STEPS: f64 = 0.19;
+/// Quarters are believed to have this share of the whole's error at least, each by how much its rays differ: two sums may agree by chance. (A
+/// sixteenth where the light is smooth.)
+const SLOWEST: f64 = 0.1;
 /// A pixel whose curvature is more than so many tolerances has 16 rays at once.
 const STRONGLY: f64 = 3.0;
 /// Nearer to a star's image than this, pixels, the neighbours are not asked whether one ray is enough.
 const NEAR_STAR: f64 = 3.0;
+/// Pixels beyond the picture's edges whose middles are known too.
+pub(super) const MARGIN: usize = 2;
+/// What is narrower, pixels, is not cut off.
+const LEAST_PART: f64 = 1e-9;
+/// Sine of an angle below which a face is seen on its edge.
+const LEVEL: f64 = 1e-9;
 /// Gauss' two nodes in 0 to 1.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
@@ -55,6 +68,17 @@ pub(super) struct Sampler<'a> {
     floor: &'a [f64],
     /// Images of the stars.
     stars: Vec<(f64, f64)>,
+    /// Columns and rows of the picture along which the box ends at once.
+    faces: [Vec<f64>; 2],
+}
+
+/// What the neighbours of a pixel's middle tell of its average, in each band.
+#[derive(Debug, Clone, Copy)]
+struct Bend {
+    /// How far the middle is below it.
+    below: [f64; MOST_BANDS],
+    /// How far off that may be.
+    error: [f64; MOST_BANDS],
 }
 
 /// A part of a pixel: a map from the unit square, with the integral over it.
@@ -117,19 +141,22 @@ impl<'a> Sampler<'a> {
             |star: &crate::physics::dust::scene::Star| view.camera.place(star.position, view.width, view.height);
         let finer = if march.fineness.nodes == 1 { Fineness::LADDER[3] } else { march.fineness };
         let stars = march.scene.stars().iter().filter_map(place).collect();
-        Sampler { march, near_star: March { fineness: finer, ..march }, view, wish, floor, stars }
+        let faces = faces(&march, view);
+        Sampler { march, near_star: March { fineness: finer, ..march }, view, wish, floor, stars, faces }
     }
 
-    /// One ray through the middle of each pixel of a row.
-    pub(super) fn middles(&self, y: usize) -> Vec<Pixel> {
-        (0..self.view.width)
+    /// One ray through the middle of each pixel of a row, and of [`MARGIN`] pixels beyond either end of it: those on the picture's edges are
+    /// averaged as all others are.
+    pub(super) fn middles(&self, y: isize) -> Vec<Pixel> {
+        let View { camera, width, height, .. } = self.view;
+        (-(MARGIN as isize)..(width + MARGIN) as isize)
             .map(|x| {
                 let mut tally = Tally::default();
                 let centre = (x as f64 + 0.5, y as f64 + 0.5);
                 let dark =
                     Pixel { radiance: [0.0; MOST_BANDS], column: 0.0, error: 0.0, given_up: false, tally, met: false };
                 // Outside a dome's circle is nothing.
-                if self.view.camera.ray(centre.0, centre.1, self.view.width, self.view.height).is_none() {
+                if camera.ray(centre.0, centre.1, *width, *height).is_none() {
                     return dark;
                 }
                 let (radiance, column) = self.sample(centre, &mut tally);
@@ -138,22 +165,34 @@ impl<'a> Sampler<'a> {
             .collect()
     }
 
-    /// The averages of a row, from the middles of it and of its neighbours; `first` is the row that `rows` begins with.
-    pub(super) fn averages(&self, rows: &[Vec<Pixel>], first: usize, y: usize) -> Vec<(Pixel, Kind)> {
-        (0..self.view.width).map(|x| self.average(rows, first, x, y)).collect()
+    /// The averages of a row, from the middles of it and of [`MARGIN`] rows above and below.
+    pub(super) fn averages(&self, rows: &[Vec<Pixel>], y: usize) -> Vec<(Pixel, Kind)> {
+        let bends: Vec<Vec<Bend>> =
+            rows.windows(3).map(|three| (1..=self.view.width + 2).map(|x| self.bend(three, x)).collect()).collect();
+        (0..self.view.width).map(|x| self.average(rows, &bends, x, y)).collect()
     }
 
-    fn average(&self, rows: &[Vec<Pixel>], first: usize, x: usize, y: usize) -> (Pixel, Kind) {
-        let row = &rows[y - first];
-        let middle = &row[x];
-        let above = y.checked_sub(1).and_then(|above| above.checked_sub(first)).and_then(|i| rows.get(i));
-        let below = rows.get(y + 1 - first);
-        let across = (x.checked_sub(1).map(|i| &row[i]), row.get(x + 1));
-        let along = (above.map(|row| &row[x]), below.map(|row| &row[x]));
-        let neighbours = [across.0, across.1, along.0, along.1];
-        let (from, to) = (x.saturating_sub(1), (x + 1).min(self.view.width - 1));
-        let met =
-            [above, Some(row), below].into_iter().flatten().any(|row| row[from..=to].iter().any(|pixel| pixel.met));
+    /// What the middles about a pixel tell of it: an average is above the middle by a 24th of the curvature.
+    fn bend(&self, three: &[Vec<Pixel>], x: usize) -> Bend {
+        let at = |row: usize, column: usize| &three[row][column].radiance;
+        let middle = at(1, x);
+        let mut bend = Bend { below: [0.0; MOST_BANDS], error: [0.0; MOST_BANDS] };
+        for band in 0..self.floor.len() {
+            let twice = 2.0 * middle[band];
+            let pair = |a: &[f64; MOST_BANDS], b: &[f64; MOST_BANDS]| a[band] + b[band] - twice;
+            let across = pair(at(1, x - 1), at(1, x + 1)) / 24.0;
+            let along = pair(at(0, x), at(2, x)) / 24.0;
+            let diagonals = (pair(at(0, x - 1), at(2, x + 1)).abs() + pair(at(0, x + 1), at(2, x - 1)).abs()) / 48.0;
+            // Curvatures across and along may cancel, and those along the diagonals: what they are without their signs is believed.
+            bend.below[band] = across + along;
+            bend.error[band] = (across.abs() + along.abs()).max(diagonals);
+        }
+        bend
+    }
+
+    fn average(&self, rows: &[Vec<Pixel>], bends: &[Vec<Bend>], x: usize, y: usize) -> (Pixel, Kind) {
+        let middle = &rows[MARGIN][x + MARGIN];
+        let met = rows[1..=3].iter().any(|row| row[x + 1..=x + 3].iter().any(|pixel| pixel.met));
         let centre = (x as f64 + 0.5, y as f64 + 0.5);
         let outside = self.view.camera.ray(centre.0, centre.1, self.view.width, self.view.height).is_none();
         // Where the middle goes through bricks that hold dust but meets none, a corner of the pixel may.
@@ -163,27 +202,21 @@ impl<'a> Sampler<'a> {
         }
         let star = self.stars.iter().any(|(sx, sy)| (sx - centre.0).hypot(sy - centre.1) < NEAR_STAR);
         let mut corrected = middle.clone();
-        let mut bent = [0.0; MOST_BANDS];
-        if let [Some(left), Some(right), Some(up), Some(down)] = neighbours {
-            let corner = |row: Option<&'_ Vec<Pixel>>, x: usize| row.map_or(middle, |row| &row[x]).radiance;
-            let corners = [corner(above, from), corner(above, to), corner(below, from), corner(below, to)];
-            // The middle is below the average by a 24th of the curvature. Curvatures across and along may cancel, and those along the
-            // diagonals: the larger of the sums of what they are without their signs is the error that is believed.
-            for (band, value) in corrected.radiance.iter_mut().enumerate().take(self.floor.len()) {
-                let twice = 2.0 * middle.radiance[band];
-                let across = (left.radiance[band] + right.radiance[band] - twice) / 24.0;
-                let along = (up.radiance[band] + down.radiance[band] - twice) / 24.0;
-                let [a, b, c, d] = corners.map(|corner| corner[band]);
-                let diagonals = ((a + d - twice).abs() + (b + c - twice).abs()) / 48.0;
-                *value = (*value + across + along).max(0.0);
-                bent[band] = (across.abs() + along.abs()).max(diagonals);
+        // Curvature may be small by chance: the largest round the pixel is believed.
+        let mut bent = [0.0f64; MOST_BANDS];
+        for bend in bends.iter().take(3).flat_map(|row| &row[x..x + 3]) {
+            for (most, error) in bent.iter_mut().zip(&bend.error) {
+                *most = most.max(*error);
             }
-            let scale = |band: usize| middle.radiance[band].max(self.floor[band]);
-            let error = (0..self.floor.len()).map(|band| bent[band] / scale(band)).fold(0.0, f64::max);
-            if error <= 0.25 * self.wish.tolerance && !star && !may_hide && !self.wish.everything {
-                corrected.error = error;
-                return (corrected, Kind::OneRay);
-            }
+        }
+        for (value, below) in corrected.radiance.iter_mut().zip(&bends[1][x + 1].below) {
+            *value = (*value + below).max(0.0);
+        }
+        let scale = |band: usize| middle.radiance[band].max(self.floor[band]);
+        let error = (0..self.floor.len()).map(|band| bent[band] / scale(band)).fold(0.0, f64::max);
+        if error <= 0.25 * self.wish.tolerance && !star && !may_hide && !self.wish.everything {
+            corrected.error = error;
+            return (corrected, Kind::OneRay);
         }
         self.many(&corrected, &bent, star || may_hide, x, y)
     }
@@ -191,9 +224,13 @@ impl<'a> Sampler<'a> {
     /// Parts of the pixel, the worst of which is quartered until the sum is good enough.
     fn many(&self, middle: &Pixel, bent: &[f64; MOST_BANDS], unknown: bool, x: usize, y: usize) -> (Pixel, Kind) {
         let mut tally = middle.tally;
-        let whole = Shape::Square { x: x as f64, y: y as f64, width: 1.0, height: 1.0 };
         let mut shapes = Vec::new();
-        let starred = self.around_stars(whole, 0, &mut shapes);
+        let parts = self.along_faces(x as f64, y as f64);
+        let unknown = unknown || parts.len() > 1;
+        let mut starred = false;
+        for part in parts {
+            starred |= self.around_stars(part, 0, &mut shapes);
+        }
         let mut patches: Vec<Patch> = shapes.into_iter().map(|shape| self.patch(shape, &mut tally)).collect();
         // What the middle and its neighbours say of the average is the second opinion on 2 x 2 rays; where a star is near, they say little,
         // and the errors are known when the parts have been quartered once.
@@ -205,10 +242,16 @@ impl<'a> Sampler<'a> {
             for (band, least) in bent.iter().enumerate().take(bands) {
                 whole.error[band] = (whole.integral[band] - middle.radiance[band])
                     .abs()
-                    .max(0.2 * least)
+                    .max(0.3 * least)
                     .max(UNSEEN * whole.spread[band]);
             }
         } else {
+            if !starred {
+                for patch in &mut patches {
+                    let Shape::Square { width, height, .. } = patch.shape else { continue };
+                    patch.error = bent.map(|bent| bent * width * height);
+                }
+            }
             patches = patches.iter().flat_map(|patch| self.quarter(patch, &mut tally)).collect();
         }
         let most = if starred { MOST_STAR_RAYS } else { MOST_RAYS };
@@ -244,6 +287,21 @@ impl<'a> Sampler<'a> {
                 }
             }
         }
+    }
+
+    /// A pixel, cut where the box ends at once.
+    fn along_faces(&self, x: f64, y: f64) -> Vec<Shape> {
+        let cut = |from: f64, faces: &[f64]| {
+            let mut at = vec![from];
+            at.extend(
+                faces.iter().copied().filter(|face| *face > from + LEAST_PART && *face < from + 1.0 - LEAST_PART),
+            );
+            at.push(from + 1.0);
+            at
+        };
+        let (columns, rows) = (cut(x, &self.faces[0]), cut(y, &self.faces[1]));
+        let part = |x: &[f64], y: &[f64]| Shape::Square { x: x[0], y: y[0], width: x[1] - x[0], height: y[1] - y[0] };
+        rows.windows(2).flat_map(|y| columns.windows(2).map(move |x| part(x, y))).collect()
     }
 
     /// Cuts a square so that each part has at most one star, at its tip; true if there was any.
@@ -305,8 +363,18 @@ impl<'a> Sampler<'a> {
         let mut parts = whole.shape.quarters().map(|shape| self.patch(shape, tally));
         for band in 0..self.floor.len() {
             let sum: f64 = parts.iter().map(|part| part.integral[band]).sum();
+            let spread: f64 = parts.iter().map(|part| part.spread[band]).sum();
+            let apart: f64 = parts.iter().map(|part| (part.integral[band] - 0.25 * sum).abs()).sum();
+            // Where the light is smooth the parts' means differ by less than twice what the rays within them do; a step between two parts
+            // may be seen by no ray of either.
+            let between = 0.25 * STEP * (apart - 2.0 * spread).max(0.0);
             for part in &mut parts {
-                part.error[band] = ((sum - whole.integral[band]).abs() / 12.0).max(UNSEEN * part.spread[band]);
+                // Rays of a part differ half as much as those of the whole where the light is smooth, as much where a step goes through it.
+                let unseen = if part.spread[band] > STEPS * whole.spread[band] { STEP } else { UNSEEN };
+                part.error[band] = ((sum - whole.integral[band]).abs() / 12.0)
+                    .max(SLOWEST * whole.error[band] * if spread > 0.0 { part.spread[band] / spread } else { 0.25 })
+                    .max(between)
+                    .max(unseen * part.spread[band]);
             }
         }
         parts
@@ -319,4 +387,26 @@ impl<'a> Sampler<'a> {
         *tally += got.tally;
         (got.radiance, got.column)
     }
+}
+
+/// Where parallel rays along a face of the box pass from all of its depth to nothing: columns and rows of the picture, if the face stands
+/// upright or level in it. (From a point, and slanted, the way through the box grows from nothing.)
+fn faces(march: &March<'_>, view: &View) -> [Vec<f64>; 2] {
+    let mut lines = [Vec::new(), Vec::new()];
+    let Some(forward) = view.camera.parallel() else { return lines };
+    let place = |point| view.camera.place(point, view.width, view.height);
+    for axis in 0..3 {
+        let mut half = glam::DVec3::ZERO;
+        half[axis] = 0.5 * march.volume.edges()[axis];
+        let (Some(low), Some(high)) = (place(-half), place(half)) else { continue };
+        if forward[axis].abs() < LEVEL {
+            let (across, along) = (high.0 - low.0, high.1 - low.1);
+            if along.abs() < LEVEL * across.abs() {
+                lines[0].extend([low.0.min(high.0), low.0.max(high.0)]);
+            } else if across.abs() < LEVEL * along.abs() {
+                lines[1].extend([low.1.min(high.1), low.1.max(high.1)]);
+            }
+        }
+    }
+    lines
 }

@@ -44,19 +44,17 @@ impl Plan {
         let gather = |model: &dyn Scattering, fineness| gather(subject, model, fineness, &enough, view.near, &rays);
         let truth = gather(subject.exact, finest);
         let floor = floor(&truth, &enough);
-        let errors = |fineness| {
-            let got = gather(subject.model, fineness);
-            let each = got.iter().zip(&truth).map(|(got, truth)| difference(&got.radiance, &truth.radiance, &floor));
+        let against = |got: &[Gathered], truth: &[Gathered]| {
+            let each = got.iter().zip(truth).map(|(got, truth)| difference(&got.radiance, &truth.radiance, &floor));
             let (worst, sum) = each.fold((0.0f64, 0.0), |(worst, sum), error| (worst.max(error), sum + error));
             (worst, sum / rays.len().max(1) as f64)
         };
+        let errors = |fineness| against(&gather(subject.model, fineness), &truth);
         let made = |fineness, (worst, mean)| Plan { fineness, floor: floor.clone(), probes: rays.len(), worst, mean };
         if wish.everything {
             // Its own error is that of the truth: what halving the pieces again would change.
             let finer = gather(subject.exact, finest.finer());
-            let each = finer.iter().zip(&truth).map(|(finer, got)| difference(&got.radiance, &finer.radiance, &floor));
-            let (worst, sum) = each.fold((0.0f64, 0.0), |(worst, sum), error| (worst.max(error), sum + error));
-            return made(finest, (worst, sum / rays.len().max(1) as f64));
+            return made(finest, against(&truth, &finer));
         }
         if let Some(step) = wish.step {
             let fineness = Fineness::of_step(step);
@@ -66,6 +64,16 @@ impl Plan {
         for fineness in Fineness::LADDER.into_iter().take(TRUTH) {
             let reached = errors(fineness);
             // A finer rung that is hardly better (the lattice's error is what remains) is not worth its time.
+            if reached.0 < 0.8 * best.worst {
+                best = made(fineness, reached);
+            }
+            if best.worst <= 0.5 * wish.tolerance {
+                return best;
+            }
+        }
+        // Not even the rung before the truth will do: the truth itself, held against what is finer still.
+        for fineness in Fineness::LADDER.into_iter().skip(TRUTH) {
+            let reached = against(&gather(subject.model, fineness), &gather(subject.exact, fineness.finer()));
             if reached.0 < 0.8 * best.worst {
                 best = made(fineness, reached);
             }
