@@ -11,7 +11,9 @@ use scotopic::physics::dust::march::Emission;
 use scotopic::physics::dust::phase::HenyeyGreenstein;
 use scotopic::physics::dust::render::{Rendered, View, Wish};
 use scotopic::physics::dust::scene::{Dust, Scene, Star};
+use scotopic::physics::dust::table::{Accuracy, Parameters, shared};
 use scotopic::physics::dust::volume::Volume;
+use scotopic::physics::dust::voxelwise::Literal;
 
 const WISH: Wish = Wish { tolerance: 5e-3, step: None, everything: false, seed: 1 };
 
@@ -363,4 +365,27 @@ fn thin_dust_twice_as_dense_is_twice_as_bright() {
     for (a, b) in once.radiance[0].iter().zip(&twice.radiance[0]) {
         assert!((2.0 * a - b).abs() <= 1e-5 * b, "{a} {b}");
     }
+}
+
+#[test]
+fn the_thesis_formulas_as_printed_differ_from_the_corrected_ones_as_they_say() {
+    let thesis = Parameters { deepest: 1.0, depths: 11, ..Parameters::thesis().unwrap() };
+    let accuracy = Accuracy { relative: Some(0.1), photons: None, most_events: 10_000_000 };
+    let table = shared::make(&thesis, &accuracy, 1, &mut |_| ()).unwrap().table;
+    let (volume, view) = (even(4), from_above(3, 3));
+    let of = |extinction: f64, albedo: bool, depth: bool| {
+        let scene = scene(&[extinction], 0.6, 0.6, &[DVec3::new(0.3, 0.4, 1.7)]);
+        let light = Light::Table(Box::new(table.clone()), Literal { albedo, depth });
+        Drawing::new(&volume, &scene, light, None).draw(&view, &WISH, &mut |_| ())
+    };
+    let near = |a: &[f32], b: &[f32], factor: f32| a.iter().zip(b).all(|(a, b)| (a / (factor * b) - 1.0).abs() < 0.01);
+    // 5.2 takes the albedo twice, in dust of any depth.
+    let (corrected, again) = (of(2.0, false, false), of(2.0, true, false));
+    assert!(near(&again.radiance[0], &corrected.radiance[0], 0.6), "{:?}", again.radiance);
+    // 5.7 leaves thin dust as bright and dims what is behind it by the deeper column; thick dust is darker.
+    let (thin, deep) = (of(1e-5, false, false), of(1e-5, false, true));
+    assert!(near(&deep.radiance[0], &thin.radiance[0], 1.0), "{:?} {:?}", deep.radiance, thin.radiance);
+    let deep = of(2.0, false, true);
+    assert!((deep.through[0][4] / (-4.0f32 / 0.6).exp() - 1.0).abs() < 1e-4, "{:?}", deep.through);
+    assert!(deep.radiance[0].iter().zip(&corrected.radiance[0]).all(|(deep, corrected)| *deep < 0.95 * corrected));
 }

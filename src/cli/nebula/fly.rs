@@ -65,7 +65,7 @@ pub struct Arguments {
     /// Sides of a frame, pixels: one number, or WIDTHxHEIGHT
     #[arg(long, value_name = "N|WxH", default_value = "512")]
     size: Size,
-    /// Where light comes from that reaches the eye: scattered once, or any number of times
+    /// Where light comes from that reaches the eye: scattered once, any number of times, or by the thesis' table
     #[arg(long, value_enum, default_value_t = Model::Multiple)]
     model: Model,
     /// The renderer that flies: some frames a second, its error as `scotopic nebula view` has it

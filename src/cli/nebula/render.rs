@@ -20,6 +20,7 @@ use crate::physics::dust::multiple::{self, Settings};
 use crate::physics::dust::render::{Rendered, View, Wish};
 use crate::physics::dust::scene::Scene;
 use crate::physics::dust::volume::Volume;
+use crate::physics::dust::voxelwise::Literal;
 
 /// What is told of a picture.
 mod explain;
@@ -33,6 +34,16 @@ pub enum Model {
     Single,
     /// Single, and light that has been scattered before
     Multiple,
+}
+
+/// A formula of the thesis that may be taken as it is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LiteralForm {
+    /// Equation 5.2: times the albedo once more
+    Albedo,
+    /// Equation 5.7: the eye's ray is dimmed by depth / albedo
+    Depth,
 }
 
 /// The nebula, the eye and where the picture goes.
@@ -57,6 +68,9 @@ pub struct Arguments {
     /// How light is scattered [default: multiple]
     #[arg(long, value_name = "NAME")]
     model: Option<Model>,
+    /// For table: a formula of the thesis as it is printed, again for more [default: the corrected forms]
+    #[arg(long, value_name = "FORM", value_delimiter = ',')]
+    literal: Vec<LiteralForm>,
     /// The picture, again for more: .npy, .fits, .exr, .png
     #[arg(long, value_name = "FILE", required = true)]
     out: Vec<PathBuf>,
@@ -145,6 +159,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let emission = glow.as_ref().map(|(volume, bands)| Emission { volume, bands });
 
+    if model != Model::Table && arguments.literal(&said) != Literal::default() {
+        return Err(Failure::asked(
+            "literal forms are those of the table: give --model table with them, or leave --literal out",
+        ));
+    }
     let begin = Instant::now();
     if let Some(orders) = arguments.orders {
         return arguments.by_order(&volume, &scene, &view, &wish, orders);
@@ -234,6 +253,12 @@ impl Arguments {
         }
     }
 
+    /// The formulas of the thesis that are taken as printed, from flags and scene file together.
+    fn literal(&self, said: &Document) -> Literal {
+        let has = |form| self.literal.contains(&form) || said.literal.contains(&form);
+        Literal { albedo: has(LiteralForm::Albedo), depth: has(LiteralForm::Depth) }
+    }
+
     fn light(
         &self,
         model: Model,
@@ -255,7 +280,7 @@ impl Arguments {
                     deepest_voxel(volume, scene),
                     self.quiet,
                 )?;
-                Ok((Light::Table(Box::new(table)), None))
+                Ok((Light::Table(Box::new(table), self.literal(said)), None))
             }
         }
     }
@@ -323,7 +348,7 @@ impl Arguments {
 }
 
 /// Depth of extinction along the edge of the densest voxel, in the band with the most: how far the table has to go.
-fn deepest_voxel(volume: &Volume, scene: &Scene) -> f64 {
+pub(super) fn deepest_voxel(volume: &Volume, scene: &Scene) -> f64 {
     let most = volume.density().iter().copied().fold(0.0, f32::max);
     let voxel = volume.voxel();
     let edge = (voxel.x * voxel.y * voxel.z).cbrt();

@@ -10,7 +10,7 @@ use super::scene::Scene;
 use super::single::Single;
 use super::table::Table;
 use super::volume::Volume;
-use super::voxelwise::Voxelwise;
+use super::voxelwise::{Literal, Voxelwise};
 
 /// Models of scattering.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub enum Light {
     /// Only light that has been scattered more than once, as a field of one order holds it.
     Before(Box<Field>),
     /// The thesis': a table, voxel by voxel.
-    Table(Box<Table>),
+    Table(Box<Table>, Literal),
 }
 
 /// Columns to the stars that were computed beforehand.
@@ -87,9 +87,11 @@ impl<'a> Drawing<'a> {
                 draw(&quick, &exact, told)
             }
             Light::Before(field) => draw(field.as_ref(), field.as_ref(), told),
-            Light::Table(table) => {
-                let quick = Voxelwise::new(volume, scene, table, lattice);
-                draw(&quick, &Voxelwise::new(volume, scene, table, None), told)
+            Light::Table(table, literal) => {
+                let quick = Voxelwise::new(volume, scene, table, lattice).literal(*literal);
+                let exact = Voxelwise::new(volume, scene, table, None).literal(*literal);
+                let scene = &literal.seen(scene);
+                render(&Subject { volume, scene, model: &quick, exact: &exact, emission }, view, wish, told)
             }
         }
     }
@@ -101,7 +103,7 @@ impl<'a> Drawing<'a> {
             Light::Single => "single",
             Light::Multiple(_) => "multiple",
             Light::Before(_) => "scattered before",
-            Light::Table(_) => "table",
+            Light::Table(..) => "table",
         }
     }
 
@@ -112,7 +114,7 @@ impl<'a> Drawing<'a> {
         match &self.light {
             Light::Single => 0.0,
             Light::Multiple(field) | Light::Before(field) => field.error(),
-            Light::Table(table) => table.worst_error(),
+            Light::Table(table, _) => table.worst_error(),
         }
     }
 
@@ -121,7 +123,7 @@ impl<'a> Drawing<'a> {
     pub fn leaves_out(&self) -> Option<&'static str> {
         match self.light {
             Light::Single => Some("light scattered more than once is not in it: too faint and, in thick dust, too red"),
-            Light::Table(_) => Some(
+            Light::Table(..) => Some(
                 "light that goes from voxel to voxel is not in it: too faint, by 40 to 50 % in the clouds of `scotopic report nebula`",
             ),
             Light::Multiple(_) | Light::Before(_) => None,

@@ -8,9 +8,31 @@ use super::camera::Ray;
 use super::light::column;
 use super::light::lattice::Lattice;
 use super::model::Scattering;
-use super::scene::Scene;
+use super::scene::{Dust, Scene};
 use super::table::Table;
 use super::volume::Volume;
+
+/// Which of the thesis' formulas are taken as they are printed. All false is the corrected form.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Literal {
+    /// Equation 5.2: the light of the table is multiplied by the albedo once more, although each scattering in the table has taken it.
+    pub albedo: bool,
+    /// Equation 5.7: the depth of a voxel is that of scattering, and the ray of the eye is dimmed by depth / albedo; the way from the star
+    /// keeps the depth itself, as 5.2 has it.
+    pub depth: bool,
+}
+
+impl Literal {
+    /// The dust as the ray of the eye meets it: with [`Literal::depth`] its extinction is that of before over the albedo. Dust that does not
+    /// scatter has no such depth, and keeps its own.
+    #[must_use]
+    pub fn seen(self, scene: &Scene) -> Scene {
+        let Dust { extinction, albedo, phase } = scene.dust().clone();
+        let factor = if self.depth && albedo > 0.0 { 1.0 / albedo } else { 1.0 };
+        let dust = Dust { extinction: extinction.iter().map(|k| k * factor).collect(), albedo, phase };
+        Scene::new(dust, scene.stars().to_vec()).unwrap_or_else(|_beyond| scene.clone())
+    }
+}
 
 /// Below this depth a voxel is as thin as the table can tell.
 const THIN: f64 = 1e-9;
@@ -33,6 +55,8 @@ pub struct Voxelwise<'a> {
     least: f64,
     /// No source is larger, per irradiance.
     most: f64,
+    /// By what literal formulas have more or less of than the corrected one, for each unit of the eye's extinction.
+    factor: f64,
 }
 
 impl<'a> Voxelwise<'a> {
@@ -56,7 +80,17 @@ impl<'a> Voxelwise<'a> {
             edge: (voxel.x * voxel.y * voxel.z).cbrt(),
             least: 1e-6 * voxel.min_element(),
             most: (1..rows).map(row).fold(0.0, f64::max),
+            factor: 1.0,
         }
+    }
+
+    /// The same with formulas as they are printed. The picture must be drawn with [`Literal::seen`] for its dust.
+    #[must_use]
+    pub fn literal(self, literal: Literal) -> Voxelwise<'a> {
+        let albedo = self.scene.dust().albedo;
+        // What a voxel sends out is the same however its depth is read: for each unit of a depth that is larger by 1/albedo, less by albedo.
+        let depth = if literal.depth && albedo > 0.0 { albedo } else { 1.0 };
+        Voxelwise { factor: depth * if literal.albedo { albedo } else { 1.0 }, ..self }
     }
 }
 
@@ -79,7 +113,7 @@ impl Scattering for Voxelwise<'_> {
             let bands = star.intensity.iter().zip(&self.scene.dust().extinction);
             for (sum, (intensity, extinction)) in out.iter_mut().zip(bands) {
                 let depth = (extinction * density * self.edge).max(THIN);
-                let turned = self.table.per_steradian(depth, cosine) / (depth * self.table.chord());
+                let turned = self.factor * self.table.per_steradian(depth, cosine) / (depth * self.table.chord());
                 *sum += turned * intensity / (distance * distance) * (-extinction * column).exp();
             }
         }
@@ -92,7 +126,7 @@ impl Scattering for Voxelwise<'_> {
             let nearest = (-way.dot(ray.direction)).clamp(from, to);
             let least = (way + ray.direction * nearest).length().max(self.least);
             for (sum, intensity) in out.iter_mut().zip(&star.intensity) {
-                *sum += self.most * intensity / (least * least);
+                *sum += self.factor * self.most * intensity / (least * least);
             }
         }
     }

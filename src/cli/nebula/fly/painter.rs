@@ -4,6 +4,8 @@ use clap::ValueEnum;
 
 use super::Arguments;
 use crate::cli::Failure;
+use crate::cli::nebula::render::deepest_voxel;
+use crate::cli::nebula::table::for_pictures;
 use crate::physics::dust::camera::Camera;
 use crate::physics::dust::develop;
 use crate::physics::dust::drawing::{Drawing, Light};
@@ -13,6 +15,7 @@ use crate::physics::dust::multiple::{self, Field};
 use crate::physics::dust::render::{View, Wish};
 use crate::physics::dust::scene::Scene;
 use crate::physics::dust::volume::Volume;
+use crate::physics::dust::voxelwise::Literal;
 
 /// Which light is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -21,6 +24,8 @@ pub(super) enum Model {
     Single,
     /// Light scattered any number of times
     Multiple,
+    /// The thesis': each voxel by the scattering table
+    Table,
 }
 
 /// A frame before it is developed.
@@ -59,9 +64,14 @@ impl<'a> Painter<'a> {
             multiple::gather(volume, scene, &settings).map_err(Failure::asked)
         };
         let field = match arguments.model {
-            Model::Single => None,
+            Model::Single | Model::Table => None,
             Model::Multiple => Some(gathered()?),
         };
+        if arguments.preview && arguments.model == Model::Table {
+            return Err(Failure::asked(
+                "the renderer that flies has single and multiple scattering: leave out --preview, or give another --model than table",
+            ));
+        }
         if arguments.preview {
             if emission.is_some() {
                 return Err(Failure::asked(
@@ -72,7 +82,15 @@ impl<'a> Painter<'a> {
             return Ok(Painter::Flying(Box::new(flyer), scene.bands()));
         }
         let wish = Wish { tolerance, step: None, everything: false, seed: arguments.seed };
-        let light = field.map_or(Light::Single, |field| Light::Multiple(Box::new(field)));
+        let light = match (field, arguments.model) {
+            (Some(field), _) => Light::Multiple(Box::new(field)),
+            (None, Model::Table) => {
+                let (dust, deepest) = (scene.dust(), deepest_voxel(volume, scene));
+                let table = for_pictures(dust.albedo, dust.phase, deepest, arguments.quiet)?;
+                Light::Table(Box::new(table), Literal::default())
+            }
+            (None, _) => Light::Single,
+        };
         let mut drawing = Drawing::new(volume, scene, light, emission);
         let view = View { camera: *first, width: arguments.size.width, height: arguments.size.height, near: 0.0 };
         drawing.prepare(&view, &wish, &mut |_| ());

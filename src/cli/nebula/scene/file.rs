@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::cli::Failure;
+use crate::cli::nebula::render::LiteralForm;
 use crate::cli::settings::explain;
 
 /// Larger files are no scenes.
@@ -30,6 +31,8 @@ pub struct Document {
     pub edge: Option<f64>,
     /// table, single or multiple.
     pub model: Option<String>,
+    /// For the table: formulas of the thesis as they are printed, albedo and depth.
+    pub literal: Vec<LiteralForm>,
     /// orthographic, perspective or domemaster.
     pub view: Option<String>,
     /// Place of the eye.
