@@ -104,6 +104,9 @@ enum Command {
     Catalogue(catalogue::Command),
     /// Make one picture as the projector would show it, without a session
     Overlay(Box<overlay::Arguments>),
+    /// Say which photographs there are
+    #[command(subcommand)]
+    Photographs(photographs::Command),
     /// Drive the projector by itself: its light, test patterns
     Projector(Box<projector::Arguments>),
     /// Measure how the projected sky lies on the seen one
@@ -157,6 +160,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Eye(command)) => eye::run(&command, &Settings::load(None)?),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
         Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
+        Some(Command::Photographs(command)) => photographs::run(&command, &Settings::load(None)?),
         Some(Command::Projector(arguments)) => projector::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments, &Settings::load(None)?),
         Some(Command::Tonight(arguments)) => tonight::run(&arguments, &Settings::load(None)?),

@@ -20,6 +20,7 @@ const TARGETS: &[(&str, Check)] = &[
     ("i2c_answers", targets::i2c_answers::check),
     ("key_map", targets::key_map::check),
     ("mount_replies", targets::mount_replies::check),
+    ("photograph_index", targets::photograph_index::check),
     ("placement", targets::placement::check),
     ("rig_file", targets::rig_file::check),
     ("settings", targets::settings::check),

@@ -49,7 +49,12 @@ impl Drop for Folder {
 
 fn scotopic(folder: &Folder, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_scotopic"));
-    command.args(arguments).env("HOME", &folder.0).env("XDG_CONFIG_HOME", &folder.0).env("XDG_STATE_HOME", &folder.0);
+    command
+        .args(arguments)
+        .env("HOME", &folder.0)
+        .env("XDG_DATA_DIRS", &folder.0)
+        .env("XDG_CONFIG_HOME", &folder.0)
+        .env("XDG_STATE_HOME", &folder.0);
     command
 }
 

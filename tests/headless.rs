@@ -42,6 +42,7 @@ fn scotopic(home: &Path, arguments: &[&str]) -> Command {
         .env("XDG_CONFIG_HOME", home)
         .env("XDG_STATE_HOME", home)
         .env("XDG_DATA_HOME", home)
+        .env("XDG_DATA_DIRS", home)
         .env("HOME", home)
         .env_remove("NOTIFY_SOCKET")
         .env_remove("WATCHDOG_USEC")

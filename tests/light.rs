@@ -54,7 +54,7 @@ impl Bench {
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
-        for variable in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"] {
+        for variable in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME", "XDG_DATA_DIRS"] {
             command.env(variable, &self.folder);
         }
         command
@@ -265,6 +265,7 @@ fn a_session_lights_its_pictures_and_is_dark_at_its_end_and_when_it_is_killed() 
             .args(["observe", "--headless", "--for", if killed { "600" } else { "8" }, "--config", "settings.toml"])
             .current_dir(&bench.folder)
             .env("HOME", &bench.folder)
+            .env("XDG_DATA_DIRS", &bench.folder)
             .env("XDG_STATE_HOME", &bench.folder)
             .stdin(Stdio::null())
             .stdout(Stdio::null())

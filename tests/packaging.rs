@@ -270,7 +270,7 @@ fn the_service_as_installed_waits_for_its_adapters_feeds_the_watchdog_and_ends_w
         .args(words.split(' ').skip(1))
         .env("NOTIFY_SOCKET", &socket)
         .env("WATCHDOG_USEC", "1000000")
-        .envs(["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"].map(|name| (name, &home)))
+        .envs(["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_DIRS"].map(|name| (name, &home)))
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())

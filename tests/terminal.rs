@@ -51,6 +51,7 @@ impl Session {
             .env("XDG_CONFIG_HOME", &home)
             .env("XDG_STATE_HOME", &home)
             .env("XDG_DATA_HOME", &home)
+            .env("XDG_DATA_DIRS", &home)
             .env("HOME", &home)
             .envs(environment.iter().copied())
             .stdin(end())

@@ -6,6 +6,7 @@ pub mod handbox_bytes;
 pub mod i2c_answers;
 pub mod key_map;
 pub mod mount_replies;
+pub mod photograph_index;
 pub mod placement;
 pub mod rig_file;
 mod script;

@@ -79,6 +79,9 @@ pub struct Arguments {
     /// Folder of your photographs and animations [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub photographs: Option<PathBuf>,
+    /// Stellarium's folder, whose photographs are drawn too, or none [default: the settings', else the installed one]
+    #[arg(long, value_name = "DIR")]
+    pub stellarium: Option<PathBuf>,
     /// Write all that passes between mount and computer to this file (without your site)
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,

@@ -7,10 +7,11 @@ use std::time::SystemTime;
 use clap::Args;
 use serde::Serialize;
 
+use super::photographs::album::{Album, Sources};
 use super::settings::Settings;
 use super::{Failure, answer, answer_json, note, photographs};
 use crate::overlay::globe::Map;
-use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style};
+use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style, compose};
 use crate::picture::png;
 use crate::pipeline::{self, Frame, View};
 use crate::sky::astrometry::{Astrometry, Reduction};
@@ -52,6 +53,12 @@ pub struct Arguments {
     /// Folder of your photographs: FITS with WCS, PNG or JPEG with a TOML file beside each [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub photographs: Option<PathBuf>,
+    /// Stellarium's folder, whose photographs are drawn too, or none [default: the settings', else the installed one]
+    #[arg(long, value_name = "DIR")]
+    pub stellarium: Option<PathBuf>,
+    /// How much of the light of stars in photographs is taken away, 0 to 1 [default: the settings', else 0]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    pub soften_stars: Option<f32>,
     /// Folder of maps of Sun, Moon and planets to wrap on their discs: moon.jpg, jupiter.png..., equirectangular, longitude
     /// -180 degrees at the left edge
     #[arg(long, value_name = "DIR")]
@@ -106,6 +113,8 @@ struct Answer<'a> {
     objects: Vec<&'static str>,
     bodies: Vec<&'static str>,
     photographs: Vec<&'a str>,
+    /// Whose they are, and on which terms.
+    credits: Vec<String>,
     black: bool,
 }
 
@@ -134,7 +143,12 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     };
     let style = Style { facts: settings.facts.clone(), ..style(arguments)? };
     let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, pupil_mm: settings.pupil_mm };
-    let photographs = photographs(arguments.photographs.as_deref().or(settings.photographs.as_deref()))?;
+    let soften = arguments.soften_stars.unwrap_or(settings.soften_stars);
+    let mut album = Album::open(Sources {
+        folder: arguments.photographs.as_deref().or(settings.photographs.as_deref()),
+        stellarium: arguments.stellarium.as_deref().or(settings.stellarium.as_deref()),
+        soften_stars: within("--soften-stars", f64::from(soften), 0.0, 1.0)? as f32,
+    })?;
 
     let mut composer = Composer::default().with_maps(maps(arguments.maps.as_deref())?);
 
@@ -149,6 +163,10 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         let field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
         pointing.position = field.nudge(right, down).applied(&pointing.position);
     }
+    let field = FieldOfView::new(&pointing, &instrument, &moment, site.as_ref());
+    let photographs = album.reaching(&field.centre(), compose::reach(&field, &style, target.as_ref()));
+    album.notes.iter().for_each(|sentence| note(sentence));
+    doubts(&photographs);
     let view = View {
         instrument: &instrument,
         site: site.as_ref(),
@@ -181,6 +199,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         objects: found.objects.iter().map(|object| object.name).collect(),
         bodies: found.bodies.iter().map(|seen| seen.body.name()).collect(),
         photographs: photographs.iter().map(|photograph| photograph.name.as_str()).collect(),
+        credits: photographs.iter().filter_map(Photograph::credit_line).collect(),
         black: picture.is_black(),
     };
     if arguments.json {
@@ -265,11 +284,14 @@ fn style(arguments: &Arguments) -> Result<Style, Failure> {
     Ok(Style { mode: arguments.mode, palette, gain: arguments.gain, ..Style::default() })
 }
 
-fn photographs(folder: Option<&Path>) -> Result<Vec<Photograph>, Failure> {
-    let Some(folder) = folder else { return Ok(Vec::new()) };
-    let (photographs, notes) = photographs::read_folder(folder)?;
-    notes.iter().for_each(|sentence| note(sentence));
-    Ok(photographs)
+/// Tells of photographs that do not show what they are named after.
+fn doubts(photographs: &[Photograph]) {
+    for photograph in photographs {
+        let object = photograph.object.as_ref().and_then(|name| Catalogue::embedded().search(name).ok());
+        if let Some(doubt) = photograph.doubt(object.as_ref(), None) {
+            note(&format!("the photograph {}: {doubt}", photograph.name));
+        }
+    }
 }
 
 /// Writes a file whole: beside, then renamed.

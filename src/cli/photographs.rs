@@ -3,12 +3,37 @@
 use std::fs;
 use std::path::Path;
 
+use clap::Subcommand;
+
 use super::Failure;
+use super::settings::Settings;
 use crate::overlay::Photograph;
 use crate::overlay::globe::Map;
 use crate::overlay::photograph::read::picture;
 use crate::overlay::photograph::{MOST_BYTES, PhotographError};
 use crate::sky::ephemeris::Body;
+
+/// All photographs there are, read when they are needed.
+pub mod album;
+/// `photographs list`.
+pub mod list;
+
+/// What can be asked of the photographs.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List them: of what, whose, on which terms, and whether they lie where they say
+    List(list::Arguments),
+}
+
+/// Runs a subcommand.
+///
+/// # Errors
+/// As the subcommand has them.
+pub fn run(command: &Command, settings: &Settings) -> Result<(), Failure> {
+    match command {
+        Command::List(arguments) => list::run(arguments, settings),
+    }
+}
 
 /// Most files that are looked at.
 const MOST_FILES: usize = 1000;

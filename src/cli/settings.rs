@@ -47,6 +47,10 @@ pub struct Settings {
     pub instrument: Option<PathBuf>,
     /// The folder of photographs.
     pub photographs: Option<PathBuf>,
+    /// Stellarium's folder, whose photographs are drawn too, or "none"; where nothing is said an installed one is looked for.
+    pub stellarium: Option<PathBuf>,
+    /// How much of the light of stars in photographs is taken away: 0 nothing, 1 all.
+    pub soften_stars: f32,
     /// Brightness of the sky's background at the zenith, V magnitudes per square arcsecond: 22 in the desert, 18 in a town.
     pub sky_brightness_mag_arcsec2: f64,
     /// Diameter of the observer's pupil in the dark, millimetres: 7 when young, 5.5 at seventy.
@@ -71,6 +75,8 @@ impl Default for Settings {
             projector: None,
             instrument: None,
             photographs: None,
+            stellarium: None,
+            soften_stars: 0.0,
             sky_brightness_mag_arcsec2: 20.8,
             pupil_mm: DARK_PUPIL_MM,
             facts: Choices::default(),
@@ -162,6 +168,7 @@ impl Settings {
         let folder = path.parent().unwrap_or(Path::new(""));
         settings.instrument = settings.instrument.map(|file| folder.join(file));
         settings.photographs = settings.photographs.map(|file| folder.join(file));
+        settings.stellarium = settings.stellarium.map(|file| folder.join(file));
         settings.handbox = settings.handbox.based_at(folder);
         settings.light = settings.light.based_at(folder);
         Ok(settings)
@@ -178,6 +185,12 @@ impl Settings {
         settings.placement.checked().map_err(|error: PlacementError| out_of_range(error.to_string()))?;
         settings.handbox.checked().map_err(out_of_range)?;
         settings.facts.checked().map_err(out_of_range)?;
+        if !(0.0..=1.0).contains(&settings.soften_stars) {
+            return Err(out_of_range(format!(
+                "soften_stars = {} is out of range: give 0 (stars as they are) to 1 (none)",
+                settings.soften_stars
+            )));
+        }
         if !(2.0..=9.0).contains(&settings.pupil_mm) {
             return Err(out_of_range(format!(
                 "pupil_mm = {} is out of range: give 5 (an old eye) to 8 (a young one)",

@@ -15,7 +15,7 @@ use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
 use crate::sky::ephemeris::{Almanac, InView};
 use crate::sky::field::FieldOfView;
 use crate::sky::project::Projection;
-use crate::units::Angle;
+use crate::units::{Angle, SurfaceBrightness};
 
 /// The only colour of text and marks: the red primary.
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -53,9 +53,10 @@ pub struct Composer {
 
 /// Photographs laid on a canvas, and for which view.
 struct Laid {
-    view: (Projection, Region, Style, Vec<String>),
+    view: (Projection, Region, Style, Option<SurfaceBrightness>, Vec<String>),
     picture: Picture,
-    any: bool,
+    /// Whose they are and on which terms they are shown, of those that are seen.
+    credits: Vec<String>,
 }
 
 /// The view in which the sky is drawn: over the object, or beside it.
@@ -136,10 +137,14 @@ impl Composer {
 
         // The sky: photographs or a moving picture, stars, outlines.
         let still = if scene.animation.is_some() { &[] } else { scene.photographs };
-        let (mut picture, mut photographed) = self.photographs(still, field, style, &view);
-        if let Some(frame) = scene.animation {
-            photographed |= frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style));
+        let own = target.as_ref().and_then(|target| target.surface_brightness);
+        let (mut picture, mut credits) = self.photographs(still, field, style, own, &view);
+        if let Some(frame) = scene.animation
+            && frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style, 1.0))
+        {
+            credits.extend(frame.credit_line());
         }
+        let photographed = !still.is_empty() || scene.animation.is_some();
         draw_stars(&mut picture, scene, field, style, &view, photographed);
         draw_bodies(&mut picture, scene, style, &view, &self.maps);
         let outlines = outlines(scene, &view);
@@ -150,6 +155,7 @@ impl Composer {
         if style.uncertainty && view.beside.is_none() {
             taken.extend(self.uncertainty(&mut picture, field, style, visible));
         }
+        taken.extend(self.credits(&mut picture, &credits, field, style, visible));
         if style.information {
             taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, visible));
             taken.extend(self.compass(&mut picture, ink, field, style, &view, visible));
@@ -160,24 +166,38 @@ impl Composer {
         picture
     }
 
-    /// A picture with the photographs on it (from last time, if nothing changed), and whether there are any.
-    fn photographs(&mut self, all: &[Photograph], field: &FieldOfView, style: &Style, view: &View) -> (Picture, bool) {
+    /// A picture with the photographs on it (from last time, if nothing changed), and the credits of those that are seen. The
+    /// finer ones lie over the coarser.
+    fn photographs(
+        &mut self,
+        all: &[Photograph],
+        field: &FieldOfView,
+        style: &Style,
+        own: Option<SurfaceBrightness>,
+        view: &View,
+    ) -> (Picture, Vec<String>) {
         if all.is_empty() {
-            return (Picture::black(field.width_px, field.height_px), false);
+            return (Picture::black(field.width_px, field.height_px), Vec::new());
         }
         let names = all.iter().map(|photograph| photograph.name.clone()).collect();
-        let wanted = (view.projection, view.region.clone(), style.clone(), names);
+        let wanted = (view.projection, view.region.clone(), style.clone(), own, names);
         if let Some(laid) = self.photographs.as_ref().filter(|laid| laid.view == wanted) {
-            return (laid.picture.clone(), laid.any);
+            return (laid.picture.clone(), laid.credits.clone());
         }
         let mut picture = Picture::black(field.width_px, field.height_px);
-        let light = photographs_light(style);
-        let mut any = false;
-        for photograph in all {
-            any |= photograph.draw(&mut picture, &view.region, &view.projection, &light);
+        let mut credits = Vec::new();
+        let mut finest_last: Vec<&Photograph> = all.iter().collect();
+        finest_last.sort_by(|a, b| b.plate.scale().to_radians().total_cmp(&a.plate.scale().to_radians()));
+        for photograph in finest_last {
+            let light = photographs_light(style, photograph.gain(own));
+            if photograph.draw(&mut picture, &view.region, &view.projection, light) {
+                credits.extend(photograph.credit_line());
+            }
         }
-        self.photographs = Some(Laid { view: wanted, picture: picture.clone(), any });
-        (picture, any)
+        credits.reverse();
+        credits.dedup();
+        self.photographs = Some(Laid { view: wanted, picture: picture.clone(), credits: credits.clone() });
+        (picture, credits)
     }
 
     /// Outlines, the target's marks, the circles of uncertainty, eyepiece and window.
@@ -255,6 +275,30 @@ impl Composer {
             lay_text(picture, &line.text, line.left, line.top, red);
         }
         lines.iter().map(Line::area).collect()
+    }
+
+    /// Whose the photographs are and on which terms they are shown, above the eyepiece's line, shortened until it can be seen
+    /// whole; its box.
+    fn credits(
+        &mut self,
+        picture: &mut Picture,
+        credits: &[String],
+        field: &FieldOfView,
+        style: &Style,
+        visible: &Region,
+    ) -> Option<Area> {
+        let (finest, others) = credits.split_first()?;
+        let em_px = (layout::text_px(field, style) * 0.7).max(13.0);
+        let lowest = field.height_px as f64 - 3.2 * f64::from(layout::text_px(field, style));
+        let more = if others.is_empty() { String::new() } else { format!(" + {} more", others.len()) };
+        let line = [90, 60, 40, 28, 20].into_iter().find_map(|most| {
+            let words = format!("photograph: {}{more}", shortened(finest, most));
+            let text = self.scribe.write(&words, Weight::Bold, em_px);
+            let line = Line::centred(text, field.width_px as f64 / 2.0, lowest);
+            visible.contains_box(&line.area()).then_some(line)
+        })?;
+        lay_text(picture, &line.text, line.left, line.top, RED.map(|channel| channel * style.marks));
+        Some(line.area())
     }
 
     /// The line of the eyepiece in use, alone.
@@ -393,10 +437,22 @@ impl Composer {
     }
 }
 
-/// A photograph's light as the projector throws it.
-fn photographs_light(style: &Style) -> impl Fn([f32; 3]) -> [f32; 3] {
+/// A photograph's light, made brighter by `gain`, as the projector throws it.
+fn photographs_light(style: &Style, gain: f32) -> impl Fn([f32; 3]) -> [f32; 3] {
     let (palette, share) = (style.palette, style.photograph);
-    move |light| colour::in_palette(palette, light).map(|channel| channel * share)
+    move |light| colour::in_palette(palette, light).map(|channel| (channel * gain).min(1.0) * share)
+}
+
+/// A text of at most so many characters; what is left out of its middle is an ellipsis, since terms stand at its end.
+fn shortened(text: &str, most: usize) -> String {
+    let length = text.chars().count();
+    if length <= most {
+        return text.to_owned();
+    }
+    let tail = most / 2;
+    let head: String = text.chars().take(most - tail - 1).collect();
+    let tail: String = text.chars().skip(length - tail).collect();
+    format!("{}…{}", head.trim_end(), tail.trim_start())
 }
 
 /// A name and what it belongs to.
@@ -524,7 +580,7 @@ fn outlines(scene: &Scene, view: &View) -> Vec<(FieldObject, Outline)> {
 
 /// Draws discs, and the moons that are neither behind them nor in their shadow.
 fn draw_bodies(picture: &mut Picture, scene: &Scene, style: &Style, view: &View, maps: &[Map]) {
-    let light = photographs_light(style);
+    let light = photographs_light(style, 1.0);
     for seen in &scene.found.bodies {
         globe::draw(picture, &view.region, &view.projection, seen, maps, &light);
         for (moon, position) in seen.moons.iter().filter(|(moon, _)| !moon.hidden && !moon.eclipsed) {

@@ -1,18 +1,34 @@
 //! The observer's photographs: read, and drawn at the right place, scale and angle.
 
+use std::sync::Arc;
+
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 use super::canvas::Region;
 use crate::picture::Picture;
 use crate::sky::coords::{Equatorial, J2000};
 use crate::sky::project::{Projection, tangent_basis};
+use crate::units::{Angle, SurfaceBrightness};
 
+/// A plate from the places of a picture's corners.
+pub mod corners;
+/// What is done to its light.
+pub mod light;
 /// Reading photographs from the bytes of files.
 pub mod read;
+/// JSON as people write it.
+pub mod relaxed_json;
+/// Its stars against the catalogue's.
+pub mod stars;
+/// Stellarium's set of pictures.
+pub mod stellarium;
 /// The astrometric cards of a FITS header.
 mod wcs;
 
 pub use read::{MOST_BYTES, PhotographError};
+
+/// Share of a photograph's shorter side over which its edge fades.
+const EDGE: f64 = 0.03;
 
 /// Where a photograph's pixels are on the sky: a tangent plane and a matrix.
 ///
@@ -56,25 +72,75 @@ pub struct Photograph {
     pub name: String,
     /// Who took it; shown with it.
     pub credit: Option<String>,
+    /// Where it comes from.
+    pub url: Option<String>,
+    /// On which terms it may be used; shown with it.
+    pub licence: Option<String>,
+    /// Of which object it is, in the catalogue's name.
+    pub object: Option<String>,
+    /// Its object's mean surface brightness.
+    pub surface_brightness: Option<SurfaceBrightness>,
+    /// The surface brightness that its full light (1) stands for, where that is known.
+    pub full_light: Option<SurfaceBrightness>,
     /// Where it is on the sky.
     pub plate: Plate,
+    /// By how much the plate misses the places that it was made from, where there were more than it needs.
+    pub miss: Option<Angle>,
     /// The picture, then each time half as large, down to a few pixels: so that shrinking averages instead of skipping.
-    levels: Vec<Picture>,
+    levels: Arc<[Picture]>,
+}
+
+/// A picture, then each time half as large, down to a few pixels.
+fn levels(picture: Picture) -> Arc<[Picture]> {
+    let mut levels = vec![picture];
+    while let Some(last) = levels.last().filter(|last| last.width().min(last.height()) > 16) {
+        levels.push(last.halved());
+    }
+    levels.into()
 }
 
 impl Photograph {
     /// From a picture of which the place is known.
     #[must_use]
     pub fn new(name: String, credit: Option<String>, plate: Plate, picture: Picture) -> Photograph {
-        let mut levels = vec![picture];
-        while let Some(last) = levels.last().filter(|last| last.width().min(last.height()) > 16) {
-            levels.push(last.halved());
+        Photograph {
+            name,
+            credit,
+            url: None,
+            licence: None,
+            object: None,
+            surface_brightness: None,
+            full_light: None,
+            plate,
+            miss: None,
+            levels: levels(picture),
         }
-        Photograph { name, credit, plate, levels }
     }
 
-    /// Adds the photograph's light to a picture where it lies in the region; `colour` turns its light into the
-    /// projector's. Whether anything was added.
+    /// Who took it and on which terms it is shown: `A. Observer (CC-BY-4.0)`.
+    #[must_use]
+    pub fn credit_line(&self) -> Option<String> {
+        match (&self.credit, &self.licence) {
+            (Some(credit), Some(licence)) => Some(format!("{credit} ({licence})")),
+            (Some(one), None) | (None, Some(one)) => Some(one.clone()),
+            (None, None) => None,
+        }
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> (usize, usize) {
+        self.levels.first().map_or((0, 0), |picture| (picture.width(), picture.height()))
+    }
+
+    /// Its light, as drawn.
+    #[must_use]
+    pub fn picture(&self) -> Option<&Picture> {
+        self.levels.first()
+    }
+
+    /// Draws the photograph into a picture where it lies in the region, over what is there; `colour` turns its light into the
+    /// projector's. Towards its edges it fades into what is there. Whether anything was drawn.
     pub fn draw(
         &self,
         picture: &mut Picture,
@@ -87,6 +153,7 @@ impl Photograph {
         let shrink = 1.0 / f64::from(1u32 << level);
         let map = DMat3::from_diagonal(DVec3::new(shrink, shrink, 1.0)) * map;
         let (width, height) = (source.width() as f64, source.height() as f64);
+        let fading = EDGE * width.min(height);
 
         let mut drawn = false;
         for y in 0..picture.height() {
@@ -96,7 +163,9 @@ impl Photograph {
                 let (u, v) = (place.x / place.z, place.y / place.z);
                 if place.z > 0.0 && u >= 0.0 && v >= 0.0 && u < width && v < height {
                     let light = colour(source.sample(u as f32, v as f32));
-                    pixel.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
+                    let within = u.min(v).min(width - u).min(height - v);
+                    let share = (within / fading).min(1.0) as f32;
+                    pixel.iter_mut().zip(light).for_each(|(there, light)| *there += (light - *there) * share);
                     drawn = true;
                 }
                 place += map.x_axis;
@@ -122,7 +191,6 @@ impl Photograph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::Angle;
 
     fn at(ra_deg: f64, dec_deg: f64) -> Equatorial<J2000> {
         Equatorial::new(Angle::degrees(ra_deg), Angle::degrees(dec_deg))

@@ -19,7 +19,7 @@ pub(crate) fn scotopic(arguments: &[&str]) -> Command {
     let home = std::env::temp_dir().join(format!("scotopic-{}-{}", env!("CARGO_CRATE_NAME"), std::process::id()));
     let mut command = Command::new(env!("CARGO_BIN_EXE_scotopic"));
     command.args(arguments).stdin(Stdio::null()).stderr(Stdio::null());
-    for folder in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"] {
+    for folder in ["HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME", "XDG_DATA_DIRS"] {
         command.env(folder, &home);
     }
     command

@@ -9,6 +9,7 @@ pub(crate) fn scotopic(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_scotopic"))
         .args(arguments)
         .env("XDG_CONFIG_HOME", std::env::temp_dir().join("scotopic-no-such-profile"))
+        .env("XDG_DATA_DIRS", std::env::temp_dir().join("scotopic-no-such-data"))
         .env("HOME", std::env::temp_dir().join("scotopic-no-such-home"))
         .output()
         .unwrap()

@@ -9,11 +9,12 @@ use super::projection::Projection;
 use super::record::{self, Complaint};
 use crate::app::adapting::Observer;
 use crate::app::model::Opening;
+use crate::cli::photographs::album::{Album, Sources};
 use crate::cli::projector::light;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::{self, State};
-use crate::cli::{Failure, animations, overlay, photographs};
+use crate::cli::{Failure, animations, overlay};
 use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{self, Ours};
 use crate::hw::mount::link::{self, Opener, Pump};
@@ -83,13 +84,18 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
 
     let state_path = if simulated { None } else { state::default_path() };
     let (state, notice) = state_path.as_ref().map_or((State::default(), None), |path| State::load(path, &mut Files));
-    let (mut photographs, mut animations, mut notices) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut animations, mut notices) = (Vec::new(), Vec::new());
     if let Some(folder) = arguments.photographs.as_ref().or(settings.photographs.as_ref()) {
-        let (stills, notes) = photographs::read_folder(folder)?;
-        let (moving, more) = animations::read_folder(folder)?;
-        (photographs, animations) = (stills, moving);
-        notices.extend(notes.into_iter().chain(more));
+        let (moving, notes) = animations::read_folder(folder)?;
+        animations = moving;
+        notices.extend(notes);
     }
+    let mut album = Album::open(Sources {
+        folder: arguments.photographs.as_deref().or(settings.photographs.as_deref()),
+        stellarium: arguments.stellarium.as_deref().or(settings.stellarium.as_deref()),
+        soften_stars: settings.soften_stars,
+    })?;
+    notices.append(&mut album.notes);
     notices.extend(notice);
     notices.extend(std::mem::take(&mut handbox.notices));
     let (east, north) = state.nudge.angles();
@@ -110,12 +116,11 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
             facts: settings.facts.clone(),
             full_cd_m2: settings.light.luminance_cd_m2,
             lamps_dim: settings.light.module.is_some(),
-            white: !photographs.is_empty() || !animations.is_empty(),
+            white: !album.is_empty() || !animations.is_empty(),
         },
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
-    let projection =
-        Projection::new(projector, photographs, eye).with_animations(animations).with_facts(settings.facts);
+    let projection = Projection::new(projector, album, eye).with_animations(animations).with_facts(settings.facts);
     Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, recording, notices })
 }
 

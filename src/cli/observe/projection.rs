@@ -6,14 +6,16 @@ use std::time::Duration;
 
 use super::clock::Clock;
 use crate::app::scene::Scene;
+use crate::cli::photographs::album::Album;
 use crate::hw::projector::output::{Output, Stamp, Told};
 use crate::hw::projector::{Dimmed, Nowhere, Projector};
 use crate::overlay::animation::Animation;
 use crate::overlay::facts::Choices;
-use crate::overlay::{Composer, Eye, Photograph, Style};
+use crate::overlay::{Composer, Eye, Mode, Photograph, Style, compose};
 use crate::picture::Picture;
 use crate::pipeline::{self, View};
 use crate::sky::catalogue::Catalogue;
+use crate::sky::field::FieldOfView;
 
 /// So many ages are kept: enough for the 99th percentile, and no more memory in the longest night.
 const KEPT: usize = 4096;
@@ -52,7 +54,7 @@ pub(super) struct Projection {
     screen: Screen,
     waiting: VecDeque<(Arc<Picture>, Origin)>,
     composer: Composer,
-    photographs: Vec<Photograph>,
+    album: Album,
     animations: Vec<Animation>,
     eye: Eye,
     facts: Choices,
@@ -75,12 +77,12 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    pub(super) fn new(projector: Box<dyn Projector>, photographs: Vec<Photograph>, eye: Eye) -> Projection {
+    pub(super) fn new(projector: Box<dyn Projector>, album: Album, eye: Eye) -> Projection {
         Projection {
             screen: Screen::Waiting(projector),
             waiting: VecDeque::new(),
             composer: Composer::default(),
-            photographs,
+            album,
             animations: Vec::new(),
             eye,
             facts: Choices::default(),
@@ -130,25 +132,39 @@ impl Projection {
             self.dim(scene.brightness);
         }
         let playing = scene.animation.and_then(|(index, frame)| self.animations.get(index)?.frame(frame));
+        let style = Style {
+            mode: scene.mode,
+            gain: self.gain,
+            information: scene.facts,
+            facts: self.facts.clone(),
+            labels: scene.facts,
+            ..Style::default()
+        };
+        let photographs = self.photographs(scene, &style);
         let view = View {
             instrument: &scene.instrument,
             site: scene.site.as_ref(),
             catalogue: Catalogue::embedded(),
-            photographs: if scene.photographs { &self.photographs } else { &[] },
+            photographs: &photographs,
             target: scene.target.as_ref(),
             eye: &self.eye,
-            style: &Style {
-                mode: scene.mode,
-                gain: self.gain,
-                information: scene.facts,
-                facts: self.facts.clone(),
-                labels: scene.facts,
-                ..Style::default()
-            },
+            style: &style,
             animation: playing.as_ref(),
             menu: scene.menu.as_ref(),
         };
         pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
+    }
+
+    /// The photographs of a scene's field; none while nothing is drawn, so that no file is read on the way to an object.
+    fn photographs(&mut self, scene: &Scene, style: &Style) -> Vec<Photograph> {
+        if !scene.photographs || style.mode == Mode::Off || scene.animation.is_some() || self.album.is_empty() {
+            return Vec::new();
+        }
+        let field = FieldOfView::new(&scene.pointing, &scene.instrument, &scene.moment, scene.site.as_ref());
+        if !field.may_draw {
+            return Vec::new();
+        }
+        self.album.reaching(&field.centre(), compose::reach(&field, style, scene.target.as_ref()))
     }
 
     /// Hands a picture over. Its stamp comes back through `told`: give it to [`Projection::stamped`].
@@ -282,7 +298,7 @@ mod tests {
     #[test]
     fn a_stamp_finds_its_picture_and_one_that_comes_after_dark_does_not() {
         let ms = Duration::from_millis;
-        let mut projection = Projection::new(Box::new(Nowhere), Vec::new(), Eye::default());
+        let mut projection = Projection::new(Box::new(Nowhere), Album::default(), Eye::default());
         let (tell, told) = std::sync::mpsc::channel();
         projection.start(Clock::made(None), move |said| drop(tell.send(said))).unwrap();
         let picture = Arc::new(Picture::black(2, 2));

@@ -58,6 +58,9 @@ pub enum PhotographError {
     /// A scale that no photograph has.
     #[error("its scale is {0} arcseconds a pixel: 0.001 to 10000 are believed")]
     Scale(f64),
+    /// Corners that lie on a line, or half a sky apart.
+    #[error("its corners on the sky enclose no area, or half the sky: correct them")]
+    Corners,
     /// A wrong TOML file beside it.
     #[error("the TOML file beside it cannot be used: {0}")]
     Beside(String),
@@ -72,6 +75,8 @@ pub enum PhotographError {
 /// angle_deg = 12.0        # position angle of the picture's top, from north through east; 0 if left out
 /// flipped = false         # true when east is right of north
 /// credit = "A. Observer"
+/// licence = "CC-BY-4.0"
+/// object = "M31"          # of which it is; if left out, what fills it
 /// ```
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -85,6 +90,10 @@ struct Beside {
     flipped: bool,
     #[serde(default)]
     credit: Option<String>,
+    #[serde(default)]
+    licence: Option<String>,
+    #[serde(default)]
+    object: Option<String>,
 }
 
 impl Photograph {
@@ -118,7 +127,10 @@ impl Photograph {
         let (width, height, factor) = (picture.width(), picture.height(), picture.factor);
         let mut plate = beside.plate(width as f64, height as f64)?;
         reduce_plate(&mut plate, factor);
-        Ok(Photograph::new(clean(name), beside.credit.as_deref().map(clean), plate, picture.picture))
+        let mut photograph = Photograph::new(clean(name), beside.credit.as_deref().map(clean), plate, picture.picture);
+        photograph.licence = beside.licence.as_deref().map(clean);
+        photograph.object = beside.object.as_deref().map(clean);
+        Ok(photograph)
     }
 }
 
@@ -180,7 +192,7 @@ fn check_bytes(bytes: &[u8]) -> Result<(), PhotographError> {
 }
 
 /// Text from a file, without what could move a cursor.
-fn clean(text: &str) -> String {
+pub(super) fn clean(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(120).collect::<String>().trim().to_owned()
 }
 

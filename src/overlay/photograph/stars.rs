@@ -1,0 +1,180 @@
+//! A photograph's stars against the catalogue's: whether it lies where it says.
+
+use glam::DVec2;
+
+use super::Photograph;
+use super::light::opened;
+use crate::overlay::stars::place;
+use crate::sky::catalogue::{Catalogue, FieldStar, Object};
+use crate::sky::coords::{Equatorial, J2000};
+use crate::units::{Angle, Magnitude};
+
+/// Most stars of either kind that are compared, the brightest.
+const MOST: usize = 60;
+/// A spot of more pixels is no star.
+const LARGEST_SPOT: usize = 3000;
+
+/// A spot of light in a photograph.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// Its middle in pixels.
+    pub pixel: DVec2,
+    /// The sum of its light above its surroundings.
+    pub light: f32,
+}
+
+/// The star-like spots of a photograph, the brightest first.
+///
+/// What is left of the picture after its opening ([`opened`]) stands in connected spots above a fifth of the brightest and six
+/// times the spread of the faint half; a spot longer than twice its breadth, or at the edge, is none.
+#[must_use]
+pub fn spots(photograph: &Photograph) -> Vec<Spot> {
+    let Some(picture) = photograph.picture() else { return Vec::new() };
+    let (width, height) = (picture.width(), picture.height());
+    let starless = opened(picture);
+    let mut rest: Vec<f32> = picture
+        .pixels()
+        .iter()
+        .zip(starless)
+        .map(|(pixel, starless)| (pixel.iter().copied().fold(0.0, f32::max) - starless).max(0.0))
+        .collect();
+    let mut sorted: Vec<f32> = rest.iter().step_by((rest.len() / 65_536).max(1)).copied().collect();
+    sorted.sort_by(f32::total_cmp);
+    let spread = sorted.get(sorted.len() * 3 / 4).copied().unwrap_or(0.0);
+    let threshold = (6.0 * spread).clamp(0.02, 0.3);
+
+    let mut found = Vec::new();
+    let mut open = Vec::new();
+    for start in 0..rest.len() {
+        if rest[start] < threshold {
+            continue;
+        }
+        // Everything that hangs together, taken out as it is met.
+        let (mut sum, mut first, mut second) = (0.0f64, DVec2::ZERO, [0.0f64; 3]);
+        let (mut area, mut at_edge, mut light) = (0usize, false, 0.0);
+        open.push(start);
+        let origin = DVec2::new((start % width) as f64, (start / width) as f64);
+        while let Some(place) = open.pop() {
+            let value = std::mem::replace(&mut rest[place], 0.0);
+            if value < threshold {
+                continue;
+            }
+            let (x, y) = (place % width, place / width);
+            let (weight, p) = (f64::from(value), DVec2::new(x as f64, y as f64) - origin);
+            sum += weight;
+            first += p * weight;
+            second[0] += p.x * p.x * weight;
+            second[1] += p.x * p.y * weight;
+            second[2] += p.y * p.y * weight;
+            light += value;
+            area += 1;
+            if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+                at_edge = true;
+                continue;
+            }
+            open.extend([place - 1, place + 1, place - width, place + width]);
+        }
+        let mean = first / sum;
+        let [xx, xy, yy] =
+            [second[0] / sum - mean.x * mean.x, second[1] / sum - mean.x * mean.y, second[2] / sum - mean.y * mean.y];
+        // The axes of the spot's moments.
+        let (half, root) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+        let round = half + root < 4.0 * (half - root) + 0.5;
+        if (3..=LARGEST_SPOT).contains(&area) && !at_edge && round {
+            found.push(Spot { pixel: origin + mean + 0.5, light });
+        }
+    }
+    found.sort_by(|a, b| b.light.total_cmp(&a.light));
+    found
+}
+
+/// How a photograph's stars lie to the catalogue's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Agreement {
+    /// Stars of the catalogue in the photograph that were looked for: the brightest, at most 60.
+    pub stars: usize,
+    /// Of these, how many have a spot within reach of where the catalogue has them.
+    pub met: usize,
+    /// How many would be met by chance: the mean of the photograph shifted in eight directions.
+    pub by_chance: f64,
+    /// Half of the stars that are met are nearer to their spot than this.
+    pub median: Angle,
+}
+
+impl Agreement {
+    /// Whether so many are met that it is no chance: at least five, and four spreads more than by chance.
+    #[must_use]
+    pub fn beyond_chance(&self) -> bool {
+        self.met >= 5 && self.met as f64 > self.by_chance + 4.0 * self.by_chance.max(1.0).sqrt()
+    }
+
+    /// Whether half of all that were looked for are met, and that is no chance.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.beyond_chance() && 2 * self.met >= self.stars
+    }
+}
+
+/// Compares a photograph's stars with the catalogue's, each within `reach`; by their places in a year (the catalogue's own
+/// motions bring them there). `None` when the catalogue has fewer than five stars there.
+#[must_use]
+pub fn agreement(photograph: &Photograph, catalogue: &Catalogue, reach: Angle, year: f64) -> Option<Agreement> {
+    let middle = photograph.middle();
+    let found = catalogue.within(&middle, photograph.radius(), Magnitude(99.0));
+    let place = |star: &FieldStar| place(star, year - 2000.0);
+    let mut stars: Vec<(f32, Equatorial<J2000>)> = found.stars.iter().map(|star| (star.v_mag, place(star))).collect();
+    stars.retain(|(_, place)| photograph.contains(place));
+    stars.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stars.truncate(MOST);
+    if stars.len() < 5 {
+        return None;
+    }
+    let places: Vec<DVec2> = stars.iter().filter_map(|(_, place)| photograph.plate.pixel(place)).collect();
+    let mut spots = spots(photograph);
+    // No more spots than the catalogue might know of, or any place is near to one.
+    spots.truncate(2 * places.len());
+    let scale = photograph.plate.scale().to_radians();
+    let reach_px = reach.to_radians() / scale;
+    let nearest = |shift: DVec2| -> Vec<f64> {
+        let distance =
+            |place: &DVec2| spots.iter().map(|spot| spot.pixel.distance(*place + shift)).fold(f64::INFINITY, f64::min);
+        let mut distances: Vec<f64> = places.iter().map(distance).filter(|distance| *distance <= reach_px).collect();
+        distances.sort_by(f64::total_cmp);
+        distances
+    };
+    let met = nearest(DVec2::ZERO);
+    let shifts =
+        (0..8).map(|eighth| DVec2::from_angle(f64::from(eighth) * std::f64::consts::FRAC_PI_4) * 3.0 * reach_px);
+    let by_chance = shifts.map(|shift| nearest(shift).len()).sum::<usize>() as f64 / 8.0;
+    Some(Agreement {
+        stars: places.len(),
+        met: met.len(),
+        by_chance,
+        median: Angle::radians(met.get(met.len() / 2).copied().unwrap_or(0.0) * scale),
+    })
+}
+
+impl Photograph {
+    /// What is doubtful about its place, if anything: its object is not in it, or its stars are not where the catalogue's are.
+    #[must_use]
+    pub fn doubt(&self, object: Option<&Object>, stars: Option<&Agreement>) -> Option<String> {
+        if let Some(object) = object.filter(|object| !self.contains(&object.astrometry.position)) {
+            let away = object.astrometry.position.separation(&self.middle());
+            // The parts of a mosaic need not hold the middle of what they are parts of.
+            let extent = object.axes_arcmin.map_or(Angle::ZERO, |(major, _)| Angle::arcminutes(major / 2.0));
+            if away > self.radius() + extent {
+                return Some(format!(
+                    "it is placed {:.1} degrees away from {}, whose name it has: it is drawn where it is placed; check its coordinates",
+                    away.to_degrees(),
+                    object.name
+                ));
+            }
+        }
+        let stars = stars.filter(|stars| stars.stars >= 15 && !stars.beyond_chance())?;
+        Some(format!(
+            "of {} stars that the catalogue has there it shows {} ({:.0} would be met by chance): it may be turned, mirrored or elsewhere; \
+             check its coordinates",
+            stars.stars, stars.met, stars.by_chance
+        ))
+    }
+}
