@@ -20,6 +20,8 @@ pub mod limb;
 mod linear;
 /// Both photographs together.
 pub mod pair;
+/// The drive's periodic error from the observer's nudges.
+pub mod periodic;
 /// The shape of a blurred edge.
 mod profile;
 /// The first guess of the circle.

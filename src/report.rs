@@ -18,6 +18,8 @@ pub mod nebula;
 pub mod plot;
 /// The refraction of single rays by every method.
 pub mod refraction;
+/// The Moon's calibration.
+pub mod registration;
 /// The thesis' figure of how a voxel scatters.
 pub mod scattering_figure;
 /// The scattering table of the thesis, and photons through spheres.

@@ -187,6 +187,8 @@ pub struct Model {
     pub here: Option<Here>,
     /// The observer's correction.
     pub nudge: Nudge,
+    /// Whether it was told that the field turns fast, so near to the zenith.
+    pub turning_told: bool,
     /// The target.
     pub target: Option<Object>,
     /// What is in the field.
@@ -233,6 +235,7 @@ impl Model {
             acknowledged: None,
             here: None,
             nudge: opening.nudge,
+            turning_told: false,
             target: None,
             field: Vec::new(),
             pairs: Vec::new(),

@@ -9,6 +9,8 @@ use serde::Serialize;
 
 use super::photographs::album::{Album, Sources};
 use super::settings::Settings;
+use super::settings::calibration::{self, Kept};
+use super::settings::disk::Files;
 use super::{Failure, answer, answer_json, note, photographs};
 use crate::overlay::globe::Map;
 use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style, compose};
@@ -20,7 +22,7 @@ use crate::sky::coords::Equatorial;
 use crate::sky::delta_t;
 use crate::sky::ephemeris::{Body, Ephemeris, InView};
 use crate::sky::field::FieldOfView;
-use crate::sky::optics::Instrument;
+use crate::sky::optics::{Calibration, Instrument};
 use crate::sky::pointing::{Motion, Pointing};
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
@@ -263,10 +265,21 @@ pub(super) fn instrument(file: Option<&Path>, eyepiece_mm: Option<f64>) -> Resul
         }
         None => Instrument::default(),
     };
+    let instrument = calibrated(instrument);
     match eyepiece_mm {
         Some(mm) => Ok(instrument.with_eyepiece(within("--eyepiece", mm, 1.0, 200.0)?)),
         None => Ok(instrument),
     }
+}
+
+/// With what `calibrate moon` has kept. A file of it that cannot be used stops nobody: it is told, and left out.
+fn calibrated(mut instrument: Instrument) -> Instrument {
+    let kept = calibration::default_path().map(|path| Kept::load(&path, &mut Files)).transpose();
+    match kept {
+        Ok(kept) => instrument.calibration = kept.flatten().map_or(Calibration::default(), |kept| kept.now),
+        Err(error) => note(&format!("the picture is drawn as if nothing was calibrated: {error}")),
+    }
+    instrument
 }
 
 /// The sky's brightness from the command line, else from the settings.

@@ -10,7 +10,8 @@ use super::{Failure, answer, answer_json};
 use crate::physics::air::us76;
 use crate::report::refraction::{agreement, airs, mediums, study};
 use crate::report::{
-    Measurement, Study, aerosol, colour, disc, eye, measure, nebula, plot, scattering_table, skylight, stability, table,
+    Measurement, Study, aerosol, colour, disc, eye, measure, nebula, plot, registration, scattering_table, skylight,
+    stability, table,
 };
 
 /// Which report.
@@ -21,6 +22,7 @@ use crate::report::{
     scotopic report colour                       the error of few wavelengths, and the times of the picture\n  \
     scotopic report nebula                       dust lit by a star, against pictures of another program\n  \
     scotopic report scattering-table             photons through dust, and the thesis' table\n  \
+    scotopic report registration --seeds 20      the Moon's calibration, on photographs with a known answer\n  \
     scotopic report stability                    what held, under extreme air and rays")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -56,6 +58,15 @@ enum Report {
     Nebula(Output),
     /// Photons through dust against closed forms, the time of the scattering table, and error against run time
     ScatteringTable(Output),
+    /// The Moon's calibration on made photographs: error against run time, and how often the interval holds the truth (minutes)
+    Registration {
+        /// Pairs of photographs of each scene
+        #[arg(long, value_name = "COUNT", default_value_t = 100)]
+        seeds: u64,
+        /// Answer as JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Extreme air, rays and scenes: what held
     Stability {
         /// Answer as JSON
@@ -88,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Report::Eye { tables, json } => eyes(tables, *json),
         Report::Nebula(output) => dust(output),
         Report::ScatteringTable(output) => scattering(output),
+        Report::Registration { seeds, json } => moons(*seeds, *json),
         Report::Stability { json } => extremes(*json),
     }
 }
@@ -277,6 +289,14 @@ fn dust(output: &Output) -> Result<(), Failure> {
     ))
 }
 
+fn moons(seeds: u64, json: bool) -> Result<(), Failure> {
+    let begin = Instant::now();
+    let seeds = super::overlay::within("--seeds", seeds as f64, 1.0, 10_000.0)? as u64;
+    let rows = registration::rows(seeds, &|| begin.elapsed(), |scene| eprintln!("{seeds} pairs: {scene}"));
+    let rows = rows.map_err(Failure::failed)?;
+    if json { answer_json(&rows) } else { answer(registration::table(&rows).trim_end()) }
+}
+
 fn extremes(json: bool) -> Result<(), Failure> {
     let mut extremes = stability::run();
     extremes.extend(aerosol::extremes());
@@ -284,6 +304,7 @@ fn extremes(json: bool) -> Result<(), Failure> {
     extremes.extend(disc::extremes());
     extremes.extend(nebula::extremes::extremes());
     extremes.extend(eye::extremes());
+    extremes.extend(registration::extremes());
     extremes.extend(scattering_table::extremes());
     if json {
         answer_json(&extremes)?;

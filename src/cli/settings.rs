@@ -16,6 +16,8 @@ use crate::safety::rules::RuleError;
 use crate::sky::site::Site;
 use disk::Disk;
 
+/// How the picture lies on the sky, as it was measured.
+pub mod calibration;
 /// Files as the settings need them, and saving that loses nothing.
 pub mod disk;
 /// What is wrong in a TOML file, in words, with the nearest right key.
@@ -24,6 +26,8 @@ pub mod explain;
 pub mod handbox;
 /// The projector's light.
 pub mod light;
+/// The nudges of the sessions.
+pub mod nudges;
 /// What the program remembers from session to session.
 pub mod state;
 
@@ -55,6 +59,8 @@ pub struct Settings {
     pub sky_brightness_mag_arcsec2: f64,
     /// Diameter of the observer's pupil in the dark, millimetres: 7 when young, 5.5 at seventy.
     pub pupil_mm: f64,
+    /// The drive's periodic error from peak to peak, arcseconds: 25 before training, 5 after.
+    pub periodic_error_arcsec: f64,
     /// Which facts are told of an object.
     pub facts: Choices,
     /// Where the picture lies on the projector's own pixels.
@@ -79,6 +85,7 @@ impl Default for Settings {
             soften_stars: 0.0,
             sky_brightness_mag_arcsec2: 20.8,
             pupil_mm: DARK_PUPIL_MM,
+            periodic_error_arcsec: 25.0,
             facts: Choices::default(),
             placement: Placement::default(),
             light: light::Light::default(),
@@ -195,6 +202,12 @@ impl Settings {
             return Err(out_of_range(format!(
                 "pupil_mm = {} is out of range: give 5 (an old eye) to 8 (a young one)",
                 settings.pupil_mm
+            )));
+        }
+        if !(5.0..=25.0).contains(&settings.periodic_error_arcsec) {
+            return Err(out_of_range(format!(
+                "periodic_error_arcsec = {} is out of range: give 5 (a trained drive) to 25 (one that was never trained)",
+                settings.periodic_error_arcsec
             )));
         }
         if !(10.0..=25.0).contains(&settings.sky_brightness_mag_arcsec2) {

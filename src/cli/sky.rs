@@ -104,6 +104,8 @@ struct Shown<'a> {
     alt_refracted_deg: Option<f64>,
     az_deg: Option<f64>,
     parallactic_deg: Option<f64>,
+    /// Null at the zenith itself, where it has no bound.
+    field_rotation_deg_per_h: Option<f64>,
     v_mag: Option<f64>,
     surface_brightness_mag_arcsec2: Option<f64>,
     size_arcmin: Option<[f64; 2]>,
@@ -142,6 +144,9 @@ fn show(arguments: &ShowArguments, profile_site: Option<Site>) -> Result<(), Fai
         alt_refracted_deg: airless.map(|seen| horizon::refracted(&seen, &air).altitude().to_degrees()),
         az_deg: airless.map(|seen| seen.azimuth().to_degrees()),
         parallactic_deg: horizon.map(|horizon| horizon.parallactic_angle(&apparent).to_degrees()),
+        field_rotation_deg_per_h: horizon
+            .map(|horizon| horizon.field_rotation(&apparent).to_degrees() * 3600.0)
+            .filter(|rate| rate.is_finite()),
         v_mag: object.as_ref().and_then(Object::v_magnitude).map(|magnitude| magnitude.0),
         surface_brightness_mag_arcsec2: object.as_ref().and_then(|object| object.surface_brightness).map(|mean| mean.0),
         size_arcmin: object.as_ref().and_then(|object| object.axes_arcmin).map(|(major, minor)| [major, minor]),
@@ -186,7 +191,14 @@ fn page(shown: &Shown<'_>, object: Option<&Object>, moment: &Moment) -> String {
         line("altitude, azimuth", String::from("unknown: give --site LAT,LON,ELEV"));
     }
     if let Some(parallactic) = shown.parallactic_deg {
-        line("parallactic angle", format!("{parallactic:.2}°"));
+        let turning = match shown.field_rotation_deg_per_h {
+            Some(rate) if rate.abs() > 100.0 => {
+                format!("; an alt-azimuth field turns {rate:+.0}° an hour so near the zenith")
+            }
+            Some(rate) => format!("; an alt-azimuth field turns {rate:+.1}° an hour"),
+            None => "; an alt-azimuth field turns without bound at the zenith".into(),
+        };
+        line("parallactic angle", format!("{parallactic:.2}°{turning}"));
     }
     if let Some(object) = object {
         describe(object, &mut line);

@@ -548,7 +548,8 @@ pub fn reach(field: &FieldOfView, style: &Style, target: Option<&Object>) -> Ang
 
 /// The eyepiece's circle on the canvas.
 fn eyepiece_disc(field: &FieldOfView) -> Disc {
-    Disc { x: field.width_px as f64 / 2.0, y: field.height_px as f64 / 2.0, radius: field.circle_px() }
+    let (x, y) = field.projection.middle();
+    Disc { x, y, radius: field.circle_px() }
 }
 
 /// Over the object, or beside it.

@@ -133,3 +133,46 @@ fn under(stretches: &[Stretch], share: f64, length: f64) -> Option<(f64, Correct
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::streams::Stream;
+
+    /// Three quarters of a turn of limb, off by 0.3 pixels of radius, under independent noise and mountains that neighbours share.
+    fn limb(seed: u64, mountains: f64) -> Vec<Stretch> {
+        let mut stream = Stream::seeded(seed);
+        let mut normal = || (0..12).map(|_| stream.uniform()).sum::<f64>() - 6.0;
+        let mut height = normal();
+        (0..60)
+            .map(|k| {
+                height = 0.8 * height + 0.6 * normal();
+                let angle = f64::from(k) * 0.08;
+                Stretch { angle, per_radius: 1.0, off: 0.3 + 0.1 * normal() + mountains * height, error: 1.0 }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_stated_error_of_the_radius_knows_of_mountains() {
+        for mountains in [0.0, 0.5] {
+            let (mut inside, mut sizes) = (0, 0.0);
+            for seed in 0..100 {
+                let found = weighed(&limb(seed, mountains), 0.08).unwrap();
+                let error = found.covariance[2][2].sqrt();
+                inside += usize::from((found.by[2] - 0.3).abs() <= 2.0 * error);
+                sizes += error / 100.0;
+            }
+            assert!((88..=100).contains(&inside), "mountains {mountains}: {inside} of 100 within two sigma");
+            assert!(if mountains > 0.0 { sizes > 0.05 } else { sizes < 0.04 }, "mountains {mountains}: {sizes}");
+        }
+    }
+
+    #[test]
+    fn a_crater_falls_out() {
+        let mut stretches = limb(1, 0.0);
+        stretches[20..24].iter_mut().for_each(|stretch| stretch.off -= 3.0);
+        let (by, kept) = robust(&stretches).unwrap();
+        assert!((by[2] - 0.3).abs() < 0.1 && !kept[20] && !kept[23] && kept[30], "{by:?}");
+    }
+}

@@ -65,7 +65,7 @@ const SHORTEST_PX: f64 = 8.0;
 /// Samples across the limb a pixel.
 const PER_PX: f64 = 2.0;
 /// A stretch is lit if it is so bright, compared with the brightest fifth.
-const LIT: f64 = 0.35;
+const LIT: f64 = 0.6;
 /// Less arc is no circle.
 const LEAST_ARC_DEG: f64 = 20.0;
 
@@ -101,9 +101,10 @@ impl Limb {
                 });
             }
             let mean = mean(&cuts);
-            let per_point = noise / (cuts.len() as f64 * step * circle.radius).sqrt();
+            // Neighbouring samples share pixels: two of them are worth one.
+            let per_point = 1.5 * noise / (cuts.len() as f64 * step * circle.radius).sqrt();
             let start = profile.unwrap_or_else(|| first(&mean, black));
-            let fitted = start.fitted(&mean, per_point.max(1e-4));
+            let (fitted, edge_error) = start.fitted(&mean, per_point.max(1e-4));
             let mut stretches: Vec<Stretch> =
                 cuts.iter().filter_map(|cut| stretch(cut, &fitted, &shape, reach)).collect();
             let (by, kept) = robust(&stretches)
@@ -129,7 +130,11 @@ impl Limb {
                     x: circle.x + correction.by[0] - by[0],
                     y: circle.y + correction.by[1] - by[1],
                     radius: circle.radius + correction.by[2] - by[2],
-                    covariance: correction.covariance,
+                    covariance: {
+                        let mut covariance = correction.covariance;
+                        covariance[2][2] += edge_error * edge_error;
+                        covariance
+                    },
                     shape,
                     arc_deg: (stretches.len() as f64 * step).to_degrees(),
                     roughness_px: (rough / stretches.len() as f64).sqrt(),

@@ -62,6 +62,24 @@ impl<const N: usize> Normal<N> {
         }
     }
 
+    /// A cell of two faces: `A += sym(g h')`, `b += r / 2`, of which noise in one face alone has no mean.
+    pub(super) fn cross(&mut self, one: &[f64; N], other: &[f64; N], right: impl Fn(usize) -> f64) {
+        for i in 0..N {
+            self.right[i] += 0.5 * right(i);
+            for j in 0..N {
+                self.matrix[i * N + j] += 0.5 * (one[i] * other[j] + one[j] * other[i]);
+            }
+        }
+    }
+
+    /// The sums without a part of them.
+    pub(super) fn without(&self, part: &Normal<N>) -> Normal<N> {
+        let mut rest = self.clone();
+        rest.matrix.iter_mut().zip(&part.matrix).for_each(|(sum, part)| *sum -= part);
+        rest.right.iter_mut().zip(&part.right).for_each(|(sum, part)| *sum -= part);
+        rest
+    }
+
     /// The solution and the inverse of the matrix; `None` if the equations do not determine it.
     pub(super) fn solve(&self) -> Option<([f64; N], [[f64; N]; N])> {
         let lower = cholesky(&self.matrix, N)?;

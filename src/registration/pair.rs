@@ -30,8 +30,8 @@ pub struct Pair {
     pub contradiction: Option<f64>,
     /// Projected middle less seen middle: to the right and down, pixels of the photographs.
     pub offset_px: [Measured; 2],
-    /// How far the projected Moon is turned from the seen one, counter-clockwise as one looks at the photographs, degrees;
-    /// nothing where neither maria nor a terminator tell.
+    /// How far the projected Moon is turned from the seen one, counter-clockwise as one looks at the photographs, degrees (a
+    /// mirror image is mirrored first); nothing where neither maria nor a terminator tell.
     pub rotation_deg: Option<Measured>,
     /// Whether the projected Moon is the mirror image of the seen one; nothing where no maria tell.
     pub mirrored: Option<bool>,
@@ -97,9 +97,12 @@ impl Pair {
             Some(other) => weighted(limb_scale, other, contradiction.unwrap_or(0.0)),
             None => limb_scale,
         };
-        // From x to y is clockwise as one looks at it.
+        // From x to y is clockwise as one looks at it; through the mirror, that came after, counter-clockwise.
         let rotation_deg = match surface {
-            Some(laid) => Some(Measured { value: -laid.turn.to_degrees(), error: laid.error.to_degrees() }),
+            Some(laid) => Some(Measured {
+                value: if laid.mirrored { laid.turn } else { -laid.turn }.to_degrees(),
+                error: laid.turn_error.to_degrees(),
+            }),
             None => seen.bright.zip(drawn.bright).map(|(seen, drawn)| Measured {
                 value: (seen - drawn).to_degrees(),
                 error: BRIGHT_LIMB_DEG * std::f64::consts::SQRT_2,
@@ -120,14 +123,15 @@ impl Pair {
     }
 }
 
-/// Two measurements of one number by their errors. Where they contradict each other, the error is widened by as much (Birge
-/// 1932, Phys. Rev. 40, 207).
+/// Two measurements of one number by their errors. Where two of like precision contradict each other, the error is widened by as
+/// much (Birge 1932, Phys. Rev. 40, 207); one that is five times coarser has no say in the error of the finer.
 fn weighted(one: Measured, other: Measured, contradiction: f64) -> Measured {
     let weights = (one.error.powi(-2), other.error.powi(-2));
     let whole = weights.0 + weights.1;
+    let alike = (0.2..5.0).contains(&(one.error / other.error));
     Measured {
         value: (one.value * weights.0 + other.value * weights.1) / whole,
-        error: whole.powf(-0.5) * if contradiction > 3.0 { contradiction } else { 1.0 },
+        error: whole.powf(-0.5) * if contradiction > 3.0 && alike { contradiction } else { 1.0 },
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::frame::Frame;
 use super::limb::Limb;
-use super::linear::{Normal, median};
+use super::linear::Normal;
 use super::texture::{Placing, SIDE, Texture, alone, disc, sampled, together};
 
 /// How the second face lies on the first: `u' = (1 + stretch) Rot(turn) u + shift`, in half widths of the disc.
@@ -14,8 +14,9 @@ pub(super) struct Laid {
     /// Turned from x to y, radians.
     pub(super) turn: f64,
     pub(super) shift: (f64, f64),
-    /// Standard deviations of stretch (and turn) and of the shift.
+    /// Standard deviations of stretch, turn and shift.
     pub(super) error: f64,
+    pub(super) turn_error: f64,
     pub(super) shift_error: f64,
     /// Whether left and right were exchanged.
     pub(super) mirrored: bool,
@@ -59,11 +60,11 @@ fn one_parity(seen: &[Option<f32>], frame: &Frame, placing: &Placing, mirrored: 
     map = refined(&one, &other, map, &[(8, 12), (4, 10), (2, 6)])?;
     for _ in 0..ANEW {
         let (one, other) = together(seen, &sampled(frame, &map.over(placing)));
-        let more = refined(&one, &other, Map::SAME, &[(2, 5), (1, 4)])?;
+        let more = refined(&one, &other, Map::SAME, &[(2, 3), (1, 4)])?;
         map = map.after(&more);
     }
     let (one, other) = together(seen, &sampled(frame, &map.over(placing)));
-    tiled(&one.softened(1), &other.softened(1), &map, mirrored)
+    settled(&one.softened(1), &other.softened(1), &map, mirrored)
 }
 
 /// The turn at which the rings of two faces correlate best.
@@ -150,135 +151,88 @@ impl Map {
     }
 }
 
-/// One step of Gauss-Newton for map and contrast.
+/// One step towards the map that lays the second face on the first.
+///
+/// Least squares would be drawn off by noise: it lowers the fitted contrast, and a wrong contrast looks like a wrong size. So the
+/// two faces take turns, and what noise does to the one is taken back by the other:
+///
+/// ```text
+/// step = sum(w . grad B  A - w . grad A  B) / (2 sum (w . grad A) (w . grad B))          w what the number moves
+/// ```
 fn aligned(first: &Texture, second: &Texture, map: &Map) -> Option<Map> {
-    let (mut both, mut other2) = (0.0, 1e-12);
-    let mut cells = Vec::new();
-    each(first, second, map, |u, v, here, (there, across, down)| {
-        both += here * there;
-        other2 += there * there;
-        cells.push([u, v, here, there, across, down]);
+    let mut normal = Normal::<4>::new();
+    let mut count = 0usize;
+    each(first, second, map, |u, v, here, there| {
+        let (own, other) = (moved(u, v, here), moved(u, v, there));
+        normal.cross(&own, &other, |k| other[k] * here.0 - own[k] * there.0);
+        count += 1;
     });
-    if cells.len() < 600 {
+    if count < 600 {
         return None;
     }
-    let gain = (both / other2).clamp(0.2, 5.0);
-    let mut normal = Normal::<4>::new();
-    for [u, v, here, there, across, down] in cells {
-        let (gx, gy) = (gain * across, gain * down);
-        let rest: f64 = here - gain * there;
-        // A crater's shadow that one of them lacks is no shift.
-        let weight = 1.0 / (1.0 + (rest / 0.15).powi(2));
-        normal.add(&[gx * u + gy * v, gy * u - gx * v, gx, gy], rest, weight);
-    }
     let (by, _) = normal.solve()?;
-    Some(Map { a: map.a + by[0], b: map.b + by[1], x: map.x + by[2], y: map.y + by[3] })
+    Some(map.after(&Map { a: 1.0 + by[0], b: by[1], x: by[2], y: by[3] }))
 }
 
-/// Walks over the cells that both know: disc coordinates, the first's value, the second's value and slopes.
-fn each(first: &Texture, second: &Texture, map: &Map, mut with: impl FnMut(f64, f64, f64, (f64, f64, f64))) {
+/// What stretch, turn and shift change in the value at a place.
+fn moved(u: f64, v: f64, (_, gx, gy): Point) -> [f64; 4] {
+    [gx * u + gy * v, gy * u - gx * v, gx, gy]
+}
+
+/// Value and slopes.
+type Point = (f64, f64, f64);
+
+/// Walks over the cells that both know: disc coordinates, and both faces' values and slopes along those coordinates.
+fn each(first: &Texture, second: &Texture, map: &Map, mut with: impl FnMut(f64, f64, Point, Point)) {
     for row in 0..SIDE {
         for column in 0..SIDE {
-            let k = row * SIDE + column;
-            if first.known[k] == 0.0 {
+            if first.known[row * SIDE + column] == 0.0 {
                 continue;
             }
             let (u, v) = (disc(column as f64), disc(row as f64));
             let (x, y) = map.apply(u, v);
-            if let Some(there) = second.at(x, y) {
-                with(u, v, f64::from(first.values[k]), there);
+            if let (Some(here), Some((there, gx, gy))) = (first.at(u, v), second.at(x, y)) {
+                with(u, v, here, (there, map.a * gx + map.b * gy, map.a * gy - map.b * gx));
             }
         }
     }
 }
 
-/// What a tile's own shift needs.
-#[derive(Clone)]
-struct Tile {
-    normal: Normal<2>,
-    sums: [f64; 4],
-}
-
-/// The last step, tile by tile: each says how far it is off by itself, and by how much they contradict each other is the error.
-fn tiled(first: &Texture, second: &Texture, before: &Map, mirrored: bool) -> Option<Laid> {
+/// The last step, and its error from how far tiles contradict each other: the jackknife (Quenouille 1956, Tukey 1958), each tile
+/// left out in its turn.
+fn settled(first: &Texture, second: &Texture, before: &Map, mirrored: bool) -> Option<Laid> {
     let across = SIDE.div_ceil(TILE);
-    let mut tiles = vec![Tile { normal: Normal::new(), sums: [0.0; 4] }; across * across];
+    let mut tiles: Vec<Option<Normal<4>>> = vec![None; across * across];
+    let mut normal = Normal::<4>::new();
     let (mut both, mut one2, mut other2) = (0.0, 1e-12, 1e-12);
-    each(first, second, &Map::SAME, |_, _, here, (there, _, _)| {
-        both += here * there;
-        one2 += here * here;
-        other2 += there * there;
+    let tile_of = |w: f64| (((w / super::texture::REACH + 1.0) / 2.0 * SIDE as f64) as usize / TILE).min(across - 1);
+    each(first, second, &Map::SAME, |u, v, here, there| {
+        let (own, other) = (moved(u, v, here), moved(u, v, there));
+        let right = |k: usize| other[k] * here.0 - own[k] * there.0;
+        normal.cross(&own, &other, right);
+        tiles[tile_of(v) * across + tile_of(u)].get_or_insert_with(Normal::new).cross(&own, &other, right);
+        both += here.0 * there.0;
+        one2 += here.0 * here.0;
+        other2 += there.0 * there.0;
     });
-    let gain = (both / other2).clamp(0.2, 5.0);
-    each(first, second, &Map::SAME, |u, v, here, (there, gx, gy)| {
-        let at = |w: f64| (((w / super::texture::REACH + 1.0) / 2.0 * SIDE as f64) as usize / TILE).min(across - 1);
-        let tile = &mut tiles[at(v) * across + at(u)];
-        tile.normal.add(&[gain * gx, gain * gy], here - gain * there, 1.0);
-        (0..4).for_each(|k| tile.sums[k] += [1.0, u, v, 0.0][k]);
-    });
-    let shifts: Vec<[f64; 5]> = tiles
-        .iter()
-        .filter(|tile| tile.sums[0] > (TILE * TILE / 3) as f64)
-        .filter_map(|tile| {
-            let (by, inverse) = tile.normal.solve()?;
-            let (u, v) = (tile.sums[1] / tile.sums[0], tile.sums[2] / tile.sums[0]);
-            Some([u, v, by[0], by[1], inverse[0][0] + inverse[1][1]])
-        })
-        .filter(|[.., variance]| variance.is_finite())
-        .collect();
-    if shifts.len() < LEAST_TILES {
+    let (by, _) = normal.solve()?;
+    let tiles: Vec<Normal<4>> = tiles.into_iter().flatten().collect();
+    if tiles.len() < LEAST_TILES {
         return None;
     }
-    let (by, inverse, variance) = joined(&shifts)?;
+    let without: Vec<[f64; 4]> =
+        tiles.iter().map(|tile| normal.without(tile).solve().map(|(by, _)| by)).collect::<Option<_>>()?;
+    let n = tiles.len() as f64;
+    let variance = |k: usize| (n - 1.0) / n * without.iter().map(|other| (other[k] - by[k]).powi(2)).sum::<f64>();
     let map = before.after(&Map { a: 1.0 + by[0], b: by[1], x: by[2], y: by[3] });
-    let size = map.a.hypot(map.b);
     Some(Laid {
-        stretch: size - 1.0,
+        stretch: map.a.hypot(map.b) - 1.0,
         turn: map.b.atan2(map.a),
         shift: (map.x, map.y),
-        error: (inverse[0][0] * variance).sqrt(),
-        shift_error: (inverse[2][2].max(inverse[3][3]) * variance).sqrt(),
+        error: variance(0).sqrt(),
+        turn_error: variance(1).sqrt(),
+        shift_error: variance(2).max(variance(3)).sqrt(),
         mirrored,
         alike: both / (one2 * other2).sqrt(),
     })
-}
-
-/// Four corrections, the inverse of their equations, and the variance of unit weight.
-type Joined = ([f64; 4], [[f64; 4]; 4], f64);
-
-/// One similarity through the tiles' shifts, robustly.
-fn joined(shifts: &[[f64; 5]]) -> Option<Joined> {
-    let mut variances: Vec<f64> = shifts.iter().map(|s| s[4]).collect();
-    // A tile's shift is never better known than a typical one: what craters' shadows add is common to all.
-    let floor = median(&mut variances);
-    let mut weights = vec![1.0; shifts.len()];
-    let mut last = None;
-    for _ in 0..8 {
-        let mut normal = Normal::<4>::new();
-        for ([u, v, x, y, variance], weight) in shifts.iter().zip(&weights) {
-            let weight = weight / (variance + floor);
-            normal.add(&[*u, -v, 1.0, 0.0], *x, weight);
-            normal.add(&[*v, *u, 0.0, 1.0], *y, weight);
-        }
-        let (by, inverse) = normal.solve()?;
-        let rest: Vec<f64> = shifts
-            .iter()
-            .map(|[u, v, x, y, variance]| {
-                let off = (x - by[0] * u + by[1] * v - by[2]).powi(2) + (y - by[0] * v - by[1] * u - by[3]).powi(2);
-                (off / (variance + floor)).sqrt()
-            })
-            .collect();
-        // Median of a Rayleigh distribution: 1.177 standard deviations.
-        let scale = median(&mut rest.clone()) / 1.177;
-        let (mut misfit, mut free) = (0.0, 0.0);
-        for (weight, rest) in weights.iter_mut().zip(&rest) {
-            let t = rest / (5.0 * scale).max(1e-12);
-            *weight = if t < 1.0 { (1.0 - t * t).powi(2) } else { 0.0 };
-            misfit += *weight * rest * rest;
-            free += 2.0 * *weight;
-        }
-        // The biweight takes from the tails of good tiles as well: on Gaussian scatter it leaves 0.9 of the variance.
-        last = Some((by, inverse, misfit / (free - 4.0).max(1.0) / 0.9));
-    }
-    last
 }

@@ -61,12 +61,12 @@ impl FieldOfView {
     #[must_use]
     pub fn towards(centre: &Equatorial<J2000>, upper_side: Angle, instrument: &Instrument) -> FieldOfView {
         let projector = &instrument.projector;
-        let (width, height) = (f64::from(projector.width_px), f64::from(projector.height_px));
-        let north = north_on_canvas(instrument, upper_side);
-        let mirrored = instrument.telescope.mirrored();
-        let scale = instrument.pixel_scale();
+        let lies = instrument.registration();
+        // In the plain view position angles grow counter-clockwise, in the mirrored one clockwise.
+        let from_upper_side = if lies.mirrored { upper_side } else { -upper_side };
+        let north = (lies.upper_side + from_upper_side).wrapped();
         FieldOfView {
-            projection: Projection::new(centre, north, mirrored, scale, (width / 2.0, height / 2.0)),
+            projection: Projection::new(centre, north, lies.mirrored, lies.scale, lies.middle),
             width_px: projector.width_px as usize,
             height_px: projector.height_px as usize,
             true_field: instrument.true_field(),
@@ -92,14 +92,16 @@ impl FieldOfView {
     /// How far from the middle something can be and still be seen on the canvas: what a catalogue must be asked for.
     #[must_use]
     pub fn radius(&self) -> Angle {
-        let half_diagonal = (self.width_px as f64).hypot(self.height_px as f64) / 2.0;
+        let (x, y) = self.projection.middle();
+        let half_diagonal = x.max(self.width_px as f64 - x).hypot(y.max(self.height_px as f64 - y));
         Angle::radians((half_diagonal.min(self.circle_px()) * self.projection.scale().to_radians()).atan())
     }
 
     /// The nudge that moves the picture by pixels to the right and down.
     #[must_use]
     pub fn nudge(&self, right_px: f64, down_px: f64) -> Nudge {
-        let (x, y) = (self.width_px as f64 / 2.0 - right_px, self.height_px as f64 / 2.0 - down_px);
+        let (x, y) = self.projection.middle();
+        let (x, y) = (x - right_px, y - down_px);
         let plane = tangent_basis(&self.centre()) * self.projection.position(x, y).direction();
         Nudge { east: Angle::radians(plane.x / plane.z), north: Angle::radians(plane.y / plane.z) }
     }
@@ -133,16 +135,6 @@ impl Nudge {
 fn offset<F>(position: &Equatorial<F>, xi: f64, eta: f64) -> Equatorial<F> {
     let basis = tangent_basis(&Equatorial::new(position.ra(), position.dec()));
     Equatorial::from_direction(basis.transpose() * DVec3::new(xi, eta, 1.0))
-}
-
-/// Where north stands on the canvas, from its top counter-clockwise, when the tube's upper side looks to the position angle
-/// `upper_side` on the sky.
-///
-/// In the plain view position angles grow counter-clockwise, in the mirrored one clockwise. The unit's own turn moves the
-/// canvas, so the sky turns back on it.
-fn north_on_canvas(instrument: &Instrument, upper_side: Angle) -> Angle {
-    let from_upper_side = if instrument.telescope.mirrored() { upper_side } else { -upper_side };
-    (instrument.telescope.upper_side() + from_upper_side - Angle::degrees(instrument.projector.angle_deg)).wrapped()
 }
 
 #[cfg(test)]

@@ -12,10 +12,13 @@ pub mod eyepiece;
 pub mod instrument;
 /// The projector's rectangle in the focal plane.
 pub mod projector;
+/// How the sky lies on the canvas, as one transform, and what was measured of it.
+pub mod registration;
 /// The tube, its mirrors, and the mounting that carries it.
 pub mod telescope;
 
 pub use eyepiece::Eyepiece;
 pub use instrument::{Instrument, InstrumentError};
 pub use projector::{Coverage, ProjectorGeometry};
+pub use registration::{Calibration, Registration};
 pub use telescope::{Diagonal, Mounting, Telescope};

@@ -65,6 +65,12 @@ impl Projection {
         Equatorial::from_direction(self.basis.row(2))
     }
 
+    /// Where the tangent point falls on the canvas, in pixels.
+    #[must_use]
+    pub fn middle(&self) -> (f64, f64) {
+        (self.middle.x, self.middle.y)
+    }
+
     /// Where north stands on the canvas, from its top counter-clockwise.
     #[must_use]
     pub fn north(&self) -> Angle {

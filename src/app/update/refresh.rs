@@ -2,11 +2,13 @@
 
 use crate::app::effect::Effect;
 use crate::app::facts;
+use crate::app::log::Weight;
 use crate::app::model::{Here, Model, Projector};
 use crate::app::scene::Scene;
 use crate::overlay::style::Mode;
 use crate::sky::catalogue::Catalogue;
 use crate::sky::horizon::Horizon;
+use crate::sky::optics::Mounting;
 use crate::sky::pointing::Motion;
 use crate::sky::time::Moment;
 use crate::units::{Angle, Magnitude};
@@ -32,6 +34,9 @@ pub(super) fn refreshed(model: &mut Model) -> Vec<Effect> {
         pointing,
         horizontal: horizon.as_ref().map(|horizon| horizon.airless(&pointing.position)),
     });
+    if let Some(horizon) = &horizon {
+        tell_of_turning(model, horizon);
+    }
     match scene(model, moment, horizon.as_ref()) {
         Err(why) => darkened(model, why),
         Ok(scene) => {
@@ -43,6 +48,28 @@ pub(super) fn refreshed(model: &mut Model) -> Vec<Effect> {
             model.drawn = Some(scene.clone());
             vec![Effect::Draw(Box::new(scene))]
         }
+    }
+}
+
+/// Near the zenith the field of an alt-azimuth mount turns faster than it can be followed: a degree in these many seconds is told.
+const FAST_TURN_S: f64 = 10.0;
+
+/// Says once, on coming so near to the zenith, that the picture's turn is not to be trusted there. It is drawn anew for every
+/// change that the eye could tell, so it is never late; but an error of the pointing is there an error of the turn.
+fn tell_of_turning(model: &mut Model, horizon: &Horizon) {
+    let Some(here) = model.here.filter(|_| model.instrument.telescope.mounting == Mounting::AltAz) else { return };
+    let fast = horizon.field_rotation(&here.pointing.position).to_degrees().abs() > FAST_TURN_S.recip();
+    let tracking = here.pointing.motion == Motion::Tracking;
+    if fast && tracking && !model.turning_told {
+        let from_zenith = here.horizontal.map_or(0.0, |seen| 90.0 - seen.altitude().to_degrees());
+        let turn = (here.pointing.uncertainty.to_degrees() / from_zenith.max(1e-6)).atan().to_degrees();
+        let text = format!(
+            "{from_zenith:.1}° from the zenith the field turns faster than 6° a minute, and the picture's turn is unsure by {turn:.0}°"
+        );
+        model.say(Weight::Note, &text, "wait until the object has passed the zenith");
+    }
+    if tracking {
+        model.turning_told = fast;
     }
 }
 

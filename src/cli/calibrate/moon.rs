@@ -9,13 +9,15 @@ use serde::Serialize;
 use super::photograph;
 use crate::cli::overlay::{instrument, within};
 use crate::cli::settings::Settings;
+use crate::cli::settings::calibration::{self, Kept};
+use crate::cli::settings::disk::Files;
 use crate::cli::{Failure, answer, answer_json, note};
 use crate::physics::refraction::{Air, of_true_altitude};
 use crate::registration::{Limb, Pair, Shape};
 use crate::sky::delta_t;
 use crate::sky::ephemeris::{Body, Ephemeris};
 use crate::sky::horizon::{self, Horizon};
-use crate::sky::optics::Instrument;
+use crate::sky::optics::{Calibration, Instrument};
 use crate::sky::physical::Aspect;
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
@@ -53,10 +55,22 @@ pub struct Arguments {
     /// Telescope, eyepieces and projector [default: the settings', else those of the thesis]
     #[arg(long, value_name = "FILE")]
     pub instrument: Option<PathBuf>,
+    /// Measure only: keep nothing
+    #[arg(long)]
+    pub measure_only: bool,
+    /// The drawn Moon was drawn as if nothing had been calibrated: begin anew instead of adding to what is kept
+    #[arg(long)]
+    pub anew: bool,
+    /// Keep scale, turn and parity, and not the offset: for a Moon that was not centred before it was photographed
+    #[arg(long)]
+    pub without_offset: bool,
     /// Answer in JSON
     #[arg(long)]
     pub json: bool,
 }
+
+/// The Moon's diameter at its mean distance.
+const MEAN_DIAMETER_ARCSEC: f64 = 1865.2;
 
 /// The Moon as the almanac has it.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -104,6 +118,8 @@ struct Told<'a> {
     projected: ToldLimb,
     camera_arcsec_px: Option<f64>,
     moon: Option<Known>,
+    kept: Option<Calibration>,
+    kept_in: Option<PathBuf>,
     notes: &'a [String],
 }
 
@@ -130,7 +146,10 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
     if known.is_none() {
         notes.push("without --at and a site the Moon's size and its flattening by the air are unknown".into());
     }
-    let told = told(&pair, known, &notes);
+    let kept =
+        if arguments.measure_only { None } else { keep(arguments, &instrument, &pair, known.as_ref(), &mut notes)? };
+    let mut told = told(&pair, known, &notes);
+    (told.kept, told.kept_in) = kept.unzip();
     if arguments.json {
         return answer_json(&told);
     }
@@ -167,6 +186,68 @@ fn known(arguments: &Arguments, settings: &Settings) -> Result<Option<Known>, Fa
         bright_limb: aspect.bright_limb_position_angle,
         zenith: horizon.parallactic_angle(&seen.apparent),
     }))
+}
+
+/// What two photographs say of a canvas whose pixels are so many of the camera's. The camera is held upright: the canvas' upper
+/// edge is the photographs'. A turn that is not known to a degree is left out.
+#[must_use]
+pub fn calibration_of(pair: &Pair, camera_per_canvas: f64) -> Calibration {
+    // What was drawn too far right is to be drawn further left.
+    let [right, down] = pair.offset_px.map(|offset| -offset.value / camera_per_canvas);
+    let turn = pair.rotation_deg.filter(|turn| turn.error < 1.0);
+    Calibration {
+        scale: pair.scale.value,
+        scale_error: pair.scale.error,
+        turn_deg: turn.map_or(0.0, |turn| turn.value),
+        turn_error_deg: turn.map_or(0.0, |turn| turn.error),
+        mirrored: pair.mirrored.unwrap_or(false),
+        right_px: right,
+        down_px: down,
+        offset_error_px: pair.offset_px[0].error.max(pair.offset_px[1].error) / camera_per_canvas,
+    }
+}
+
+/// Keeps what was measured, in pixels of the canvas; nothing where it would make no sense.
+fn keep(
+    arguments: &Arguments,
+    instrument: &Instrument,
+    pair: &Pair,
+    known: Option<&Known>,
+    notes: &mut Vec<String>,
+) -> Result<Option<(Calibration, PathBuf)>, Failure> {
+    let Some(path) = calibration::default_path() else {
+        notes.push("nothing was kept: there is no folder for it; set XDG_STATE_HOME or HOME".into());
+        return Ok(None);
+    };
+    let before = if arguments.anew { None } else { Kept::load(&path, &mut Files)? };
+    // The drawn Moon has so many pixels on the canvas as its diameter has of them: so many camera pixels are one of the canvas.
+    let diameter = known.map_or(MEAN_DIAMETER_ARCSEC, |known| known.diameter_arcsec);
+    let drawn_with = before.as_ref().map_or(Calibration::default(), |kept| kept.now).scale;
+    let per_px = instrument.projector.pixel_scale(instrument.telescope.focal_length_mm).to_arcseconds() * drawn_with;
+    let camera_per_canvas = pair.projected.radius / (diameter / 2.0 / per_px);
+    let mut measured = calibration_of(pair, camera_per_canvas);
+    if measured.turn_error_deg == 0.0 {
+        notes.push("the turn was not kept: it is not known to a degree".into());
+    }
+    if arguments.without_offset {
+        measured = Calibration { right_px: 0.0, down_px: 0.0, offset_error_px: 0.0, ..measured };
+    }
+    let photographed = arguments.at.map_or_else(String::new, |utc| utc.to_rfc3339());
+    let photographs = format!(
+        "{:016x}-{:016x}",
+        photograph::digest(&arguments.telescope)?,
+        photograph::digest(&arguments.projected)?
+    );
+    let kept = Kept::after(before.as_ref(), &photographs, &photographed, &measured);
+    if !kept.now.is_sane() {
+        notes.push(format!(
+            "nothing was kept: with what was measured before, the scale would be {:.3}; see `scotopic calibrate show`, or give --anew",
+            kept.now.scale
+        ));
+        return Ok(None);
+    }
+    kept.save(&path, &mut Files)?;
+    Ok(Some((kept.now, path)))
 }
 
 /// What the air makes of the disc, and how much that may be wrong, relative to the scale.
@@ -229,6 +310,8 @@ fn told<'a>(pair: &Pair, known: Option<Known>, notes: &'a [String]) -> Told<'a> 
         projected: limb(&pair.projected),
         camera_arcsec_px: known.map(|known| known.diameter_arcsec / (2.0 * pair.telescope.radius)),
         moon: known,
+        kept: None,
+        kept_in: None,
         notes,
     }
 }
@@ -282,6 +365,19 @@ fn page(told: &Told<'_>) -> String {
                 moon.diameter_arcsec,
                 moon.altitude_deg,
                 100.0 * moon.flattening
+            ),
+        );
+    }
+    if let (Some(kept), Some(path)) = (&told.kept, &told.kept_in) {
+        line(
+            "kept",
+            format!(
+                "scale {:.4}, turn {:+.2}°, axis {:+.1}, {:+.1} px off the canvas' middle, in {}",
+                kept.scale,
+                kept.turn_deg,
+                kept.right_px,
+                kept.down_px,
+                path.display()
             ),
         );
     }

@@ -33,6 +33,16 @@ pub(super) fn read(path: &Path) -> Result<Frame, Failure> {
     Frame::new(width, height, telling(channels)).map_err(|error| wrong(error.to_string()))
 }
 
+/// A number that says which file this is: Fowler, Noll and Vo's hash (FNV-1a, 64 bits) of its bytes.
+///
+/// # Errors
+/// The file cannot be read.
+pub(super) fn digest(path: &Path) -> Result<u64, Failure> {
+    let bytes = fs::read(path).map_err(Failure::failed)?;
+    let mixed = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    Ok(bytes.iter().fold(0xcbf2_9ce4_8422_2325, mixed))
+}
+
 /// Columns, rows, and the brightness of each channel.
 type Channels = (usize, usize, Vec<Vec<f32>>);
 

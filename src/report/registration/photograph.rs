@@ -55,13 +55,16 @@ impl Default for Photographed {
 /// The Moon's radius in arcseconds at its mean distance.
 const RADIUS_ARCSEC: f64 = 932.6;
 
+/// Steps round the limb.
+const HEIGHTS: usize = 4096;
+
 /// A face and a limb drawn by chance: darker maria, brighter craters, mountains.
 #[derive(Debug, Clone)]
 pub struct Face {
     /// Place, radius and brightness of spots.
     spots: Vec<[f64; 4]>,
-    /// Waves round the limb: amplitude and phase of 3, 4, 5...
-    waves: Vec<(f64, f64)>,
+    /// Height of the limb round the disc, -1 to 1, in equal steps.
+    limb: Vec<f64>,
 }
 
 impl Face {
@@ -81,11 +84,16 @@ impl Face {
             spots.push([within(-1.0, 1.0), within(-1.0, 1.0), within(low, high), depth]);
         }
         // The amplitude falls with the length of the wave as the limb's own does, about k^-0.7.
-        let mut waves: Vec<(f64, f64)> =
-            (3..140).map(|k| (f64::from(k).powf(-0.7) * within(-1.0, 1.0), within(0.0, std::f64::consts::TAU))).collect();
-        let highest = (0..2000).map(|k| wave(&waves, f64::from(k) * 0.003_141_59).abs()).fold(0.0, f64::max);
-        waves.iter_mut().for_each(|(amplitude, _)| *amplitude /= highest);
-        Face { spots, waves }
+        let waves: Vec<(f64, f64)> = (3..140)
+            .map(|k| (f64::from(k).powf(-0.7) * within(-1.0, 1.0), within(0.0, std::f64::consts::TAU)))
+            .collect();
+        let height = |angle: f64| -> f64 {
+            waves.iter().zip(3..).map(|((amplitude, phase), k)| amplitude * (f64::from(k) * angle + phase).cos()).sum()
+        };
+        let limb: Vec<f64> = (0..HEIGHTS).map(|k| height(k as f64 / HEIGHTS as f64 * std::f64::consts::TAU)).collect();
+        let highest = limb.iter().fold(1e-9, |most: f64, height| most.max(height.abs()));
+        let limb = limb.iter().map(|height| height / highest).collect();
+        Face { spots, limb }
     }
 
     /// The photograph, `width` x `height`: brightness row by row, 0 to 1, in 256 steps.
@@ -132,7 +140,7 @@ impl Face {
     fn shine(&self, how: &Photographed, map: &[f32], u: f64, v: f64, (sun_sin, sun_cos): (f64, f64)) -> f64 {
         let away = u.hypot(v);
         let relief = how.relief_arcsec / RADIUS_ARCSEC;
-        if away > 1.0 + relief || away > 1.0 + relief * wave(&self.waves, v.atan2(u)) {
+        if away > 1.0 + relief || away > 1.0 + relief * self.height(v.atan2(u)) {
             return 0.0;
         }
         let mu = (1.0 - away * away).max(1e-4).sqrt();
@@ -143,6 +151,13 @@ impl Face {
         }
         let cell = |w: f64| (((w + 1.0) * 512.0) as usize).min(1023);
         shaded * f64::from(map[cell(v) * 1024 + cell(u)])
+    }
+
+    /// Height of the limb in a direction, -1 to 1.
+    fn height(&self, angle: f64) -> f64 {
+        let place = angle.rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU * HEIGHTS as f64;
+        let (from, part) = (place as usize, place.fract());
+        self.limb[from % HEIGHTS] * (1.0 - part) + self.limb[(from + 1) % HEIGHTS] * part
     }
 
     /// Reflectance over the disc, 1024 cells a side.
@@ -164,10 +179,6 @@ impl Face {
         }
         map
     }
-}
-
-fn wave(waves: &[(f64, f64)], angle: f64) -> f64 {
-    waves.iter().zip(3..).map(|((amplitude, phase), k)| amplitude * (f64::from(k) * angle + phase).cos()).sum()
 }
 
 fn blurred(light: &[f32], width: usize, height: usize, sigma: f64) -> Vec<f32> {

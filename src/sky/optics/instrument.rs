@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Eyepiece, ProjectorGeometry, Telescope, eyepiece};
+use super::{Calibration, Eyepiece, ProjectorGeometry, Telescope, eyepiece};
 use crate::eye::powers::Choice;
 use crate::eye::{Viewing, limit};
 use crate::units::{Angle, Magnitude, SurfaceBrightness};
@@ -42,6 +42,9 @@ pub struct Instrument {
     pub projector: ProjectorGeometry,
     /// The eyepieces in the case.
     pub eyepieces: Vec<Eyepiece>,
+    /// What was measured of how the picture lies on the sky; not in the file, which a person writes.
+    #[serde(skip)]
+    pub calibration: Calibration,
     /// Which of them is in the holder: an index into `eyepieces`. Private: always inside.
     #[serde(skip)]
     in_use: usize,
@@ -76,6 +79,7 @@ impl Default for Instrument {
             telescope: Telescope::default(),
             projector: ProjectorGeometry::default(),
             eyepieces: eyepiece::of_the_thesis(),
+            calibration: Calibration::default(),
             in_use: 0,
         }
     }
@@ -174,7 +178,7 @@ impl Instrument {
     /// Sky under one pixel of the projector. The eyepiece magnifies sky and picture alike, so it does not enter.
     #[must_use]
     pub fn pixel_scale(&self) -> Angle {
-        self.projector.pixel_scale(self.telescope.focal_length_mm)
+        self.registration().scale
     }
 
     /// A typical observer's eye of pupil `pupil_mm` behind the eyepiece in use and the beam splitter.
