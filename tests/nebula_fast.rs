@@ -158,7 +158,7 @@ fn what_is_left_out_does_not_show() {
         let scene = scene(depth, 0.6, 0.6, &[STAR]);
         let camera = window(DVec3::new(1.0, 0.8, 2.6));
         let some = see(&volume, &scene, &camera, &Quality::FULL);
-        let all = see(&volume, &scene, &camera, &Quality { opaque: 0.0, skip: false, ..Quality::FULL });
+        let all = see(&volume, &scene, &camera, &Quality { step: Quality::FULL.step, ..Quality::EVERYTHING });
         let off = worst(&some, &all);
         assert!(off <= brightest(&all) / 512.0, "{depth}: {off} of {}", brightest(&all));
         assert!(off <= some.left_out + 1e-5 * brightest(&all), "{depth}: {off}, and {} was told", some.left_out);
@@ -176,6 +176,24 @@ fn pixels_between_rays_are_what_rays_of_their_own_would_see() {
     let between = flyer.frame(&camera, 129, 127, &Quality::FLYING).unwrap();
     assert!(worst(&full, &between) < brightest(&full) / 256.0, "{} of {}", worst(&full, &between), brightest(&full));
     assert!(between.work.rays * 3 < full.work.rays * 2, "{} of {}", between.work.rays, full.work.rays);
+}
+
+#[test]
+fn steps_are_as_long_as_a_tolerance_allows() {
+    let (volume, camera) = (ball(48), window(DVec3::new(0.4, 0.2, 0.9)));
+    let mut before = 0.0;
+    for tolerance in [1e-4, 1.0 / 512.0, 0.1] {
+        let mut flyer = Flyer::new(&volume, &scene(2.0, 0.6, 0.6, &[STAR]), None).unwrap();
+        let step = flyer.longest_step(&camera, &Quality::FULL, tolerance).unwrap();
+        let mut seen = |step| flyer.frame(&camera, 160, 160, &Quality { step, ..Quality::FULL }).unwrap();
+        let (fine, there) = (seen(0.5), seen(step));
+        // 64 x 64 pixels were looked at, these are others.
+        let allowed = if step > 0.5 { 1.5 * tolerance * brightest(&fine) } else { 0.0 };
+        assert!(worst(&fine, &there) <= allowed, "{tolerance}: {step}, {}", worst(&fine, &there));
+        assert!(step >= before, "{tolerance}: {step} {before}");
+        before = step;
+    }
+    assert_eq!(before, 2.0);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use glam::DVec3;
 
+use self::seen::Seen;
 use super::files::VolumeArguments;
 use super::scene::SceneArguments;
 use crate::cli::{Failure, note};
@@ -22,8 +23,14 @@ use crate::tui::nebula::{Did, Flight, Told, draw};
 use crate::tui::terminal::Taken;
 use crate::tui::theme::{Depth, STEPS, Theme};
 
+/// How much a frame shows.
+mod seen;
+
 /// Flights of photons for the light that has scattered more than once, while flying: a second or two.
 const FLIGHTS: u64 = 400_000;
+
+/// With the first two qualities steps are as long as leaves each pixel within this share of the brightest.
+const TOLERANCE: f32 = 1.0 / 512.0;
 
 /// What 1 to 4 choose.
 const QUALITIES: [(&str, Quality); 4] = [
@@ -58,6 +65,9 @@ pub struct Arguments {
     /// With --turn-for: 1 (full) to 4 (draft), as the keys
     #[arg(long, value_name = "1-4", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=4))]
     quality: u8,
+    /// With --turn-for: the figures for programs
+    #[arg(long, requires = "turn_for")]
+    json: bool,
 }
 
 fn size(text: &str) -> Result<(usize, usize), String> {
@@ -88,10 +98,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         gathering: None,
         stale: false,
         white: 0.0,
+        step: None,
     };
     flying.gather(&scene);
     match arguments.turn_for {
-        Some(seconds) => flying.turn_for(seconds, usize::from(arguments.quality) - 1),
+        Some(seconds) => flying.turn_for(seconds, usize::from(arguments.quality) - 1, arguments.json),
         None => flying.in_terminal(),
     }
 }
@@ -110,6 +121,8 @@ struct Flying {
     stale: bool,
     /// The radiance that is shown white.
     white: f32,
+    /// Steps along rays, voxels; chosen anew for each scene.
+    step: Option<f64>,
 }
 
 impl Flying {
@@ -159,6 +172,7 @@ impl Flying {
         };
         self.gathering = None;
         if let Some(field) = field {
+            self.step = None;
             self.flyer.glow(field);
         }
         if self.stale {
@@ -183,7 +197,14 @@ impl Flying {
 
     fn frame(&mut self) -> Result<Frame, Failure> {
         let camera = self.camera().ok_or_else(|| Failure::Failed("the eye has no direction".into()))?;
-        let (_, quality) = QUALITIES[self.flight.quality.min(QUALITIES.len() - 1)];
+        let (_, mut quality) = QUALITIES[self.flight.quality.min(QUALITIES.len() - 1)];
+        if quality.step <= Quality::FULL.step {
+            quality.step = match self.step {
+                Some(step) => step,
+                None => self.flyer.longest_step(&camera, &quality, TOLERANCE).map_err(Failure::asked)?,
+            };
+            self.step = Some(quality.step);
+        }
         self.flyer.frame(&camera, self.size.0, self.size.1, &quality).map_err(Failure::asked)
     }
 
@@ -255,6 +276,7 @@ impl Flying {
 
     fn changed(&mut self) -> Result<(), Failure> {
         let scene = self.scene()?;
+        self.step = None;
         self.flyer.change(&self.volume, &scene).map_err(Failure::asked)?;
         if self.gathering.is_some() {
             self.stale = true;
@@ -283,7 +305,7 @@ impl Flying {
     }
 
     /// Flies a circle without a terminal, once the light that has scattered more than once is there.
-    fn turn_for(&mut self, seconds: f64, quality: usize) -> Result<(), Failure> {
+    fn turn_for(&mut self, seconds: f64, quality: usize, json: bool) -> Result<(), Failure> {
         if !(seconds > 0.0 && seconds <= 3600.0) {
             return Err(Failure::asked(format!("a flight of {seconds} seconds: more than 0, and 3600 at most")));
         }
@@ -303,12 +325,33 @@ impl Flying {
         // Finds the white that the words speak of.
         drop(self.developed(&last));
         note(&self.words(&last));
+        let seen = Seen::of(&last, &self.volume, 1.min(self.said.bands() - 1));
+        if json {
+            return crate::cli::answer_json(&serde_json::json!({
+                "frames_per_second": rate,
+                "width": self.size.0,
+                "height": self.size.1,
+                "stars": self.said.stars().len(),
+                "quality": self.quality(),
+                "step_voxels": self.step,
+                "covered_share": seen.covered,
+                "filled_share": seen.filled,
+                "central_depth": seen.depth,
+                "samples_a_frame": last.work.samples,
+                "left_out_of_white": f64::from(last.left_out) / f64::from(self.white.max(f32::MIN_POSITIVE)),
+            }));
+        }
+        let step = self.step.map_or(String::new(), |step| format!(", steps of {step} voxels"));
         crate::cli::answer(&format!(
-            "{rate:.2} frames a second, {} x {} pixels, {} stars, quality {}",
+            "{rate:.2} frames a second, {} x {} pixels, {} stars, quality {}{step}\n{:.0} % of the pixels covered, {:.0} % of the voxels \
+             filled, depth {:.2} in the middle",
             self.size.0,
             self.size.1,
             self.said.stars().len(),
-            self.quality()
+            self.quality(),
+            100.0 * seen.covered,
+            100.0 * seen.filled,
+            seen.depth
         ))
     }
 }

@@ -24,6 +24,8 @@ mod cast;
 mod glow;
 /// The grid and its margin.
 mod grid;
+/// Numbers of 16 bits.
+mod half;
 /// The kernel.
 mod march;
 /// The light close to a star.
@@ -39,9 +41,10 @@ mod spread;
 
 pub use cast::Work;
 
+use self::cast::Times;
 use self::glow::Seen;
 use self::grid::Grid;
-use self::march::CELL;
+use self::march::{Cell, DENSITY};
 use self::near::Surroundings;
 use self::occupancy::Occupancy;
 use self::shade::{BANDS, Lamp, Shading, Towards};
@@ -152,7 +155,8 @@ pub struct Flyer {
     field: Option<Field>,
     /// Radiance of 1 in the flyer's numbers.
     scale: f64,
-    cells: Vec<[f32; CELL]>,
+    cells: Vec<Cell>,
+    times: Times,
     /// How the cells were shaded last: they serve again for the same eye.
     shaded: Option<(Towards, bool, f32)>,
     /// The glow as it was seen then.
@@ -176,16 +180,23 @@ impl Flyer {
         // Radiance is intensity over a length squared.
         let scale = brightest / (grid.unit * grid.unit);
         let negligible = negligible(scene, &grid);
+        let density = grid.pad(volume.density());
+        let most = density.iter().fold(0.0f32, |a, b| a.max(*b));
+        let times = Times { light: 1.0, density: half::power_of_two(most) };
         let mut flyer = Flyer {
             occupancy: Occupancy::new(&grid, &bricks, negligible),
             everywhere: Occupancy::new(&grid, &bricks, -1.0),
-            density: grid.pad(volume.density()),
+            cells: density
+                .iter()
+                .map(|density| Cell::from(half::half(density * times.density)) << DENSITY.trailing_zeros())
+                .collect(),
+            times,
+            density,
             lamps: Vec::new(),
             scene: scene.clone(),
             seen: field.as_ref().map(|field| Seen::of(field, &grid)).unwrap_or_default(),
             field,
             scale,
-            cells: vec![[0.0; CELL]; grid.len()],
             grid,
             shaded: None,
         };
@@ -283,6 +294,7 @@ impl Flyer {
             grid: &self.grid,
             occupancy: if quality.skip { &self.occupancy } else { &self.everywhere },
             cells: &self.cells,
+            times: self.times,
             lamps: &self.lamps,
             surroundings: &surroundings,
             step: quality.step,
@@ -341,6 +353,28 @@ impl Flyer {
         Ok(frame)
     }
 
+    /// The longest steps, up to two voxels, with which no pixel is further than `tolerance` of the brightest from what half voxels show:
+    /// a smooth nebula on a fine grid needs no more. Looked for in 64 x 64 pixels of what the camera sees.
+    ///
+    /// # Errors
+    /// A quality that cannot be.
+    pub fn longest_step(&mut self, camera: &Camera, quality: &Quality, tolerance: f32) -> Result<f64, FastError> {
+        let mut seen = |step| {
+            let quality = Quality { step, coarse: 1, probes: 0, ..*quality };
+            self.frame(camera, LOOK, LOOK, &quality).map(|frame| frame.pixels)
+        };
+        let fine = seen(STEPS[0])?;
+        let white = fine.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+        for step in STEPS[1..].iter().rev() {
+            let there = seen(*step)?;
+            let off = fine.iter().zip(&there).flat_map(|(a, b)| (0..BANDS).map(|n| (a[n] - b[n]).abs()));
+            if off.fold(0.0, f32::max) <= tolerance * white {
+                return Ok(*step);
+            }
+        }
+        Ok(STEPS[0])
+    }
+
     fn strongest(&self) -> f32 {
         self.extinction().into_iter().fold(0.0, f32::max)
     }
@@ -374,19 +408,28 @@ impl Flyer {
         if let Some(field) = &self.field {
             self.seen.look(field, &self.grid, towards, (1.0 / self.scale) as f32);
         }
+        let mut brightest = self.shaded_at(self.times.light, towards, skip);
+        // The light was brought into the range of the cells' numbers as in the frame before, which is nearly always right.
+        if brightest > 0.0 && !DIGITS.contains(&(brightest * self.times.light)) {
+            self.times.light = half::power_of_two(brightest);
+            brightest = self.shaded_at(self.times.light, towards, skip);
+        }
+        self.shaded = Some((towards, skip, brightest));
+        brightest
+    }
+
+    fn shaded_at(&mut self, times: f32, towards: Towards, skip: bool) -> f32 {
         let shading = Shading {
             grid: &self.grid,
             occupancy: if skip { &self.occupancy } else { &self.everywhere },
-            density: &self.density,
             lamps: &self.lamps,
             asymmetry: self.scene.dust().phase.asymmetry() as f32,
             extinction: self.extinction(),
             towards,
             seen: self.field.as_ref().map(|_| &self.seen),
+            times,
         };
-        let brightest = shade::shade(&shading, &mut self.cells);
-        self.shaded = Some((towards, skip, brightest));
-        brightest
+        shade::shade(&shading, &mut self.cells)
     }
 }
 
@@ -408,6 +451,9 @@ fn negligible(scene: &Scene, grid: &Grid) -> f32 {
 /// Dust of less optical depth than this along the longest way through the box is passed over.
 const NEGLIGIBLE: f64 = 1e-4;
 
+/// The brightest cell in numbers of 16 bits: above, it does not fit; below, the dimmer ones lose digits.
+const DIGITS: std::ops::RangeInclusive<f32> = 64.0..=half::MOST;
+
 /// Rays that end where less than this comes through are held to [`UNSEEN`].
 const FINE_OPAQUE: f64 = 1.0 / 1024.0;
 
@@ -416,6 +462,12 @@ const UNSEEN: f32 = 1.0 / 600.0;
 
 /// Steps of a probe, as shares of the frame's.
 const FINE: f64 = 0.25;
+
+/// Steps to choose from, voxels.
+const STEPS: [f64; 6] = [0.5, 0.75, 1.0, 1.25, 1.5, 2.0];
+
+/// Pixels across and down of a look at what steps do.
+const LOOK: usize = 64;
 
 /// Most spacings of the lattice of columns.
 const FINEST_LATTICE: usize = 64;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::grid::{Grid, LANES};
-use super::march::{self, CELL, Cells, Stretch, Traveller};
+use super::march::{self, CELL, Cell, Cells, Stretch, Traveller};
 use super::near::{REACH, Surroundings};
 use super::occupancy::Occupancy;
 use super::shade::{BANDS, Lamp};
@@ -16,11 +16,20 @@ const TILE: usize = 8;
 /// Pixels of a tile.
 const PIXELS: usize = TILE * TILE;
 
+/// What the numbers in the cells are multiplied by: powers of two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Times {
+    pub(super) light: f32,
+    pub(super) density: f32,
+}
+
 /// What rays go through, and how.
 pub(super) struct Casting<'a> {
     pub(super) grid: &'a Grid,
     pub(super) occupancy: &'a Occupancy,
-    pub(super) cells: &'a [[f32; CELL]],
+    pub(super) cells: &'a [Cell],
+    /// What light and density in the cells are multiplied by.
+    pub(super) times: Times,
     pub(super) lamps: &'a [Lamp],
     pub(super) surroundings: &'a Surroundings<'a>,
     /// Steps, in voxels.
@@ -202,7 +211,10 @@ type Pixels<'a> = &'a mut [[f32; BANDS]];
 /// One tile, with the widest vectors that the processor has.
 fn dispatched(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+    if std::arch::is_x86_feature_detected!("avx2")
+        && std::arch::is_x86_feature_detected!("fma")
+        && std::arch::is_x86_feature_detected!("f16c")
+    {
         #[expect(unsafe_code, reason = "the processor was asked whether it has these instructions")]
         return unsafe { with_avx2(casting, camera, tile, pixels, through) };
     }
@@ -210,7 +222,7 @@ fn dispatched(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pi
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn with_avx2(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>, through: Pixels<'_>) -> Work {
     // A closure made here may use what the processor has.
     let kernel = |cells: Cells<'_>, traveller: &mut Traveller, stretch: Stretch, extinction| {
@@ -259,7 +271,7 @@ fn cast_tile(
     let row = grid.padded[0] as u32;
     let cells = Cells { values: casting.cells, row, plane: row * grid.padded[1] as u32 };
     let [red, green, blue] = casting.surroundings.extinction;
-    let extinction = [red, green, blue, 0.0];
+    let extinction = [red, green, blue, 0.0].map(|k| k / casting.times.density);
     let step = casting.step / bundle.pace;
     let length = step * LANES as f64;
     // Stretches are counted from the eye, so that neighbouring tiles sample at the same lengths.
@@ -286,7 +298,7 @@ fn cast_tile(
             continue;
         }
         let until = from + length;
-        let densest = bundle.densest(casting.occupancy, from, until);
+        let densest = bundle.densest(casting.occupancy, from, until) * casting.times.density;
         if densest > 0.0 {
             let (begin, end) = ((from - base) as f32, (until - base) as f32);
             for lane in lanes.iter_mut().filter(|lane| !lane.done) {
@@ -316,7 +328,8 @@ fn cast_tile(
         if let (Some(pixel), Some(through)) = (pixels.get_mut(at), through.get_mut(at)) {
             // Rounding may leave a hair less than nothing behind dust without end.
             let positive = |[red, green, blue, _]: [f32; CELL]| [red.max(0.0), green.max(0.0), blue.max(0.0)];
-            (*pixel, *through) = (positive(lane.traveller.light), positive(lane.traveller.through));
+            *pixel = positive(lane.traveller.light).map(|light| light / casting.times.light);
+            *through = positive(lane.traveller.through);
         }
     }
     work

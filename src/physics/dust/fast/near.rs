@@ -17,8 +17,11 @@ use crate::physics::dust::phase::HenyeyGreenstein;
 /// How far from a star the grid does not hold all of its light, longest edges of a voxel.
 pub(super) const REACH: f32 = 6.0;
 
-/// Directions from the star.
-const ANGLES: usize = 24;
+/// Directions from the star along a ray that passes it closely; others have their share of the half turn.
+const ANGLES: f64 = 24.0;
+
+/// Fewest directions.
+const FEWEST: f64 = 4.0;
 
 /// Samples between the star and a point.
 const WAY: usize = 3;
@@ -51,10 +54,11 @@ impl Surroundings<'_> {
         let passing = (1.0 / mean_inverse(passing, pixel)).max(NEAREST);
         let angle = |t: f64| ((t - middle) / passing).atan();
         let (first, last) = (angle(from), angle(until));
-        let step = (last - first) / ANGLES as f64;
+        let angles = (ANGLES * (last - first) / std::f64::consts::PI).ceil().max(FEWEST);
+        let step = (last - first) / angles;
         let mut column = self.column(ray, enter, from);
         let mut before = (from, self.dust(ray, from));
-        for n in 0..ANGLES {
+        for n in 0..angles as usize {
             let phi = first + (n as f64 + 0.5) * step;
             let t = (middle + passing * phi.tan()).clamp(from, until);
             let place = ray.origin + ray.direction * t;

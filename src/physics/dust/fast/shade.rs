@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::glow::Seen;
 use super::grid::{Grid, LANES};
-use super::march::CELL;
+use super::half;
+use super::march::{CELL, Cell, DENSITY};
 use super::near::REACH;
 use super::occupancy::Occupancy;
 
@@ -56,13 +57,14 @@ pub(super) struct Lamp {
 pub(super) struct Shading<'a> {
     pub(super) grid: &'a Grid,
     pub(super) occupancy: &'a Occupancy,
-    pub(super) density: &'a [f32],
     pub(super) lamps: &'a [Lamp],
     pub(super) asymmetry: f32,
     /// Extinction per unit of the grid's length and density.
     pub(super) extinction: [f32; BANDS],
     pub(super) towards: Towards,
     pub(super) seen: Option<&'a Seen>,
+    /// What light is multiplied by in the cells.
+    pub(super) times: f32,
 }
 
 type Eight = [f32; LANES];
@@ -88,7 +90,7 @@ pub(super) fn share_of_grid(x: f32) -> f32 {
 }
 
 /// Shades all cells that a ray can ask for. Gives the most light of any.
-pub(super) fn shade(shading: &Shading<'_>, cells: &mut [[f32; CELL]]) -> f32 {
+pub(super) fn shade(shading: &Shading<'_>, cells: &mut [Cell]) -> f32 {
     let grid = shading.grid;
     let row = grid.padded[0];
     let xs: Vec<f32> = (0..row).map(|x| grid.centre(0, x) as f32).collect();
@@ -106,9 +108,12 @@ pub(super) fn shade(shading: &Shading<'_>, cells: &mut [[f32; CELL]]) -> f32 {
 }
 
 /// One row, with the widest vectors that the processor has.
-fn dispatched(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [[f32; CELL]]) -> f32 {
+fn dispatched(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [Cell]) -> f32 {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+    if std::arch::is_x86_feature_detected!("avx2")
+        && std::arch::is_x86_feature_detected!("fma")
+        && std::arch::is_x86_feature_detected!("f16c")
+    {
         #[expect(unsafe_code, reason = "the processor was asked whether it has these instructions")]
         return unsafe { with_avx2(shading, xs, y, z, line) };
     }
@@ -116,13 +121,13 @@ fn dispatched(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut 
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn with_avx2(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [[f32; CELL]]) -> f32 {
+#[target_feature(enable = "avx2,fma,f16c")]
+fn with_avx2(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [Cell]) -> f32 {
     shade_line(shading, xs, y, z, line)
 }
 
 #[inline(always)]
-fn shade_line(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [[f32; CELL]]) -> f32 {
+fn shade_line(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut [Cell]) -> f32 {
     let grid = shading.grid;
     let start = (z * grid.padded[1] + y) * grid.padded[0];
     let (py, pz) = (grid.centre(1, y) as f32, grid.centre(2, z) as f32);
@@ -144,11 +149,14 @@ fn shade_line(shading: &Shading<'_>, xs: &[f32], y: usize, z: usize, line: &mut 
                 lit(shading, lamp, columns, [xs, &[py; LANES], &[pz; LANES]], &to_eye, &mut light);
             }
         }
-        let Some(density) = shading.density.get(at..).and_then(|rest| rest.first_chunk::<LANES>()) else { continue };
         for n in 0..LANES {
-            let [red, green, blue, _] = before[n];
-            cells[n] = [light[0][n] + red, light[1][n] + green, light[2][n] + blue, density[n]];
-            most = most.max(cells[n][0].max(cells[n][1]).max(cells[n][2]));
+            let mut cell = cells[n] & DENSITY;
+            for band in 0..BANDS {
+                let light = light[band][n] + before[n][band];
+                most = most.max(light);
+                cell |= u64::from(half::half(light * shading.times)) << (16 * band);
+            }
+            cells[n] = cell;
         }
     }
     most

@@ -1,17 +1,17 @@
 //! The kernel with vectors of eight numbers: both corners along x in one, then two samples in one.
 
 use std::arch::x86_64::{
-    __m128, __m256, _mm_cvtss_f32, _mm_fmadd_ps, _mm_fnmadd_ps, _mm_mul_ps, _mm_set1_ps, _mm_setr_ps, _mm_shuffle_ps,
-    _mm_sub_ps, _mm256_castps256_ps128, _mm256_extractf128_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps,
-    _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set_m128, _mm256_set1_ps, _mm256_setr_ps,
-    _mm256_shuffle_ps, _mm256_sub_ps,
+    __m128, __m256, _mm_cvtss_f32, _mm_fmadd_ps, _mm_fnmadd_ps, _mm_mul_ps, _mm_set_epi64x, _mm_set1_ps, _mm_setr_ps,
+    _mm_shuffle_ps, _mm_sub_ps, _mm256_castps256_ps128, _mm256_cvtph_ps, _mm256_extractf128_ps, _mm256_fmadd_ps,
+    _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set_m128,
+    _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sub_ps,
 };
 
-use super::{CELL, Cells, LANES, Places, Stretch, Traveller};
+use super::{CELL, Cell, Cells, LANES, Places, Stretch, Traveller};
 
 /// Takes a ray through a stretch, as [`super::through`] does; they differ by rounding.
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 pub(in super::super) fn through(
     cells: Cells<'_>,
     traveller: &mut Traveller,
@@ -29,7 +29,7 @@ pub(in super::super) fn through(
 }
 
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn samples<const THIN: bool, const EIGHT: bool>(
     cells: Cells<'_>,
     traveller: &mut Traveller,
@@ -70,7 +70,7 @@ fn samples<const THIN: bool, const EIGHT: bool>(
 
 /// The two corners along x of a sample, between its four rows.
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn rows(cells: Cells<'_>, places: &Places, k: usize) -> Option<__m256> {
     let (row, plane) = (cells.row as usize, cells.plane as usize);
     let [here, above, behind, both] = &places.shares;
@@ -86,15 +86,15 @@ fn rows(cells: Cells<'_>, places: &Places, k: usize) -> Option<__m256> {
 
 /// Two neighbouring cells: one load.
 #[inline]
-#[target_feature(enable = "avx2,fma")]
-fn pair(cells: &[[f32; CELL]]) -> Option<__m256> {
+#[target_feature(enable = "avx2,fma,f16c")]
+fn pair(cells: &[Cell]) -> Option<__m256> {
     let [a, b] = cells.first_chunk()?;
-    Some(_mm256_setr_ps(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]))
+    Some(_mm256_cvtph_ps(_mm_set_epi64x(b.cast_signed(), a.cast_signed())))
 }
 
 /// 1 - e^-x, see [`super::lost`] and [`super::lost_thin`].
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn lost<const THIN: bool>(x: __m256) -> __m256 {
     let number = |value: f32| _mm256_set1_ps(value);
     if THIN {
@@ -114,13 +114,13 @@ fn lost<const THIN: bool>(x: __m256) -> __m256 {
 }
 
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn four([a, b, c, d]: [f32; CELL]) -> __m128 {
     _mm_setr_ps(a, b, c, d)
 }
 
 #[inline]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,f16c")]
 fn numbers(v: __m128) -> [f32; CELL] {
     let second = _mm_shuffle_ps::<1>(v, v);
     let (third, fourth) = (_mm_shuffle_ps::<2>(v, v), _mm_shuffle_ps::<3>(v, v));
