@@ -16,6 +16,8 @@ pub mod animations;
 pub mod calibrate;
 /// The catalogue files that are built into the program.
 pub mod catalogue;
+/// The hand controller's own places of objects.
+pub mod coordinates;
 /// What the observer can see.
 pub mod eye;
 /// How a subcommand ends without doing what was asked.
@@ -156,14 +158,14 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Simulate(device)) => simulate::run(&device),
         Some(Command::Handbox(command)) => handbox::run(&command, &Settings::load(None)?),
         Some(Command::Supervise) => supervise::run(),
-        Some(Command::Sky(command)) => sky::run(&command, Settings::load(None)?.site),
-        Some(Command::Eye(command)) => eye::run(&command, &Settings::load(None)?),
+        Some(Command::Sky(command)) => sky::run(&command, settings()?.site),
+        Some(Command::Eye(command)) => eye::run(&command, &settings()?),
         Some(Command::Catalogue(command)) => catalogue::run(&command),
-        Some(Command::Overlay(arguments)) => overlay::run(&arguments, &Settings::load(None)?),
-        Some(Command::Photographs(command)) => photographs::run(&command, &Settings::load(None)?),
+        Some(Command::Overlay(arguments)) => overlay::run(&arguments, &settings()?),
+        Some(Command::Photographs(command)) => photographs::run(&command, &settings()?),
         Some(Command::Projector(arguments)) => projector::run(&arguments),
         Some(Command::Calibrate(arguments)) => calibrate::run(&arguments, &Settings::load(None)?),
-        Some(Command::Tonight(arguments)) => tonight::run(&arguments, &Settings::load(None)?),
+        Some(Command::Tonight(arguments)) => tonight::run(&arguments, &settings()?),
         Some(Command::Optics(arguments)) => optics::run(&arguments, &Settings::load(None)?),
         Some(Command::Sun(arguments)) => sun::run(&arguments),
         Some(Command::Nebula(arguments)) => nebula::run(&arguments),
@@ -174,6 +176,13 @@ fn run(cli: Cli) -> Result<(), Failure> {
             answer_bytes(&script)
         }
     }
+}
+
+/// The settings, with the hand controller's own places laid over the catalogue's.
+fn settings() -> Result<Settings, Failure> {
+    let settings = Settings::load(None)?;
+    coordinates::take(settings.coordinates.as_deref())?.iter().for_each(|sentence| note(sentence));
+    Ok(settings)
 }
 
 /// Prints a line of the answer. A reader that has heard enough (`| head`) is no failure.

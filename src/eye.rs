@@ -16,14 +16,20 @@ pub mod blackwell;
 pub mod bleach;
 /// Crumey's threshold: the model.
 pub mod crumey;
+/// The veil of a bright point in the eye: CIE 146.
+pub mod glare;
 /// What of a light the rods see, and how wide it leaves the pupil.
 pub mod lamp;
 /// The faintest star.
 pub mod limit;
+/// How much brighter the Moon makes the sky.
+pub mod moonlight;
 /// Which magnifications show an object best.
 pub mod powers;
 /// How much more light a lit rod or cone needs: threshold against luminance.
 pub mod rods;
+/// Schaefer's limiting magnitude: the second opinion on stars.
+pub mod schaefer;
 /// From the luminances of a scene to those of a display.
 pub mod tone;
 /// Instrument and eye together: the background that the eye gets.

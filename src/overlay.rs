@@ -37,6 +37,8 @@ pub mod stars;
 pub mod style;
 /// Text as coverage.
 pub mod text;
+/// How bright pictures and captions are, toned for the eye.
+pub mod tone;
 
 pub use compose::{Composer, Scene, compose, reach};
 pub use photograph::Photograph;

@@ -80,10 +80,14 @@ fn faintest(view: &View) -> Magnitude {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::coords::{Equatorial, OfDate};
+    use crate::eye::tone::Method;
+    use crate::overlay::tone::{Lights, Toning};
+    use crate::sky::coords::{Equatorial, Horizontal, OfDate};
+    use crate::sky::ephemeris::{Body, Ephemeris};
+    use crate::sky::horizon::Horizon;
     use crate::sky::pointing::Motion;
     use crate::sky::time::Utc;
-    use crate::units::Angle;
+    use crate::units::{Angle, SurfaceBrightness};
 
     fn frame_of(motion: Motion, stale: bool) -> Frame {
         let moment = Moment::at(Utc::from_rfc3339("2026-11-22T20:00:00Z").unwrap());
@@ -115,6 +119,88 @@ mod tests {
         let (x, y) = frame.field.projection.pixel(&nearest.position).unwrap();
         assert!((x - 512.0).hypot(y - 384.0) < 1.0, "M57 stands at {x}, {y}");
         assert!(!frame.picture.is_black());
+    }
+
+    /// A frame towards a place of date, and where on the canvas that place is.
+    fn towards(
+        position: &Equatorial<OfDate>,
+        moment: &Moment,
+        sky: f64,
+        method: Method,
+    ) -> (Frame, Lights, (f64, f64)) {
+        let pointing = Pointing {
+            position: *position,
+            uncertainty: Angle::arcminutes(2.0),
+            motion: Motion::Tracking,
+            stale: false,
+        };
+        let instrument = Instrument::default();
+        let eye = Eye { sky: SurfaceBrightness(sky), ..Eye::default() };
+        let tone = Toning { method, picture_over_object_mag: Some(4.0), captions_over_object_mag: Some(9.0) };
+        let style = Style { tone, ..Style::default() };
+        let site = Site::new(60.17, 24.94, 30.0).unwrap();
+        let view = View {
+            instrument: &instrument,
+            site: Some(&site),
+            catalogue: Catalogue::embedded(),
+            photographs: &[],
+            target: None,
+            eye: &eye,
+            style: &style,
+            animation: None,
+            menu: None,
+        };
+        let mut composer = Composer::default();
+        let frame = frame(&pointing, moment, &view, &mut composer);
+        let place = frame.field.projection.pixel(&crate::sky::astrometry::j2000(position, moment)).unwrap();
+        (frame, *composer.lights().unwrap(), place)
+    }
+
+    #[test]
+    fn poles_zero_hours_zenith_and_what_is_below_the_horizon_are_drawn_under_every_sky_with_every_operator() {
+        let moment = Moment::at(Utc::from_rfc3339("2026-11-22T20:00:00Z").unwrap());
+        let site = Site::new(60.17, 24.94, 30.0).unwrap();
+        let horizon = Horizon::at(&moment, &site);
+        let up =
+            |altitude_deg: f64| horizon.of_date(&Horizontal::new(Angle::degrees(180.0), Angle::degrees(altitude_deg)));
+        let at = |ra: f64, dec: f64| Equatorial::new(Angle::degrees(ra), Angle::degrees(dec));
+        let places =
+            [at(0.0, 90.0), at(123.0, -89.999), at(0.0, 0.0), at(359.999_99, 10.0), up(90.0), up(89.999), up(-30.0)];
+        for (index, position) in places.iter().enumerate() {
+            for sky in [16.0, 22.2] {
+                let (frame, lights, (x, y)) = towards(position, &moment, sky, Method::ALL[index % 4]);
+                assert!((x - 512.0).hypot(y - 384.0) < 1.0, "place {index} stands at {x}, {y}");
+                assert!(frame.picture.pixels().iter().flatten().all(|light| (0.0..=1.0).contains(light)), "{index}");
+                assert!(lights.text <= lights.picture && lights.own_cd_m2.is_finite() && lights.own_cd_m2 > 0.0);
+                assert!(lights.picture_cd_m2().is_finite() && lights.exponent.is_finite(), "{lights:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_moon_a_degree_above_the_horizon_is_a_disc_in_the_middle_and_years_far_away_have_stars_only() {
+        let site = Site::new(60.17, 24.94, 30.0).unwrap();
+        let begin = Utc::from_rfc3339("2026-11-24T12:00:00Z").unwrap();
+        let seen = |minutes: f64| {
+            let moment = Moment::at(begin.plus_seconds(60.0 * minutes));
+            let ephemeris = Ephemeris::at(&moment).unwrap();
+            let moon = ephemeris.place(Body::Moon).topocentric(ephemeris.reduction(), &site).apparent;
+            (moment, moon, Horizon::at(&moment, &site).airless(&moon).altitude().to_degrees())
+        };
+        let rising =
+            (0..1440).map(|minute| seen(f64::from(minute))).find(|(_, _, altitude)| (altitude - 1.0).abs() < 0.1);
+        let (moment, moon, _) = rising.expect("the Moon rises within a day");
+        let (frame, lights, _) = towards(&moon, &moment, 21.0, Method::Tr93);
+        let body = frame.found.bodies.iter().find(|seen| seen.body == Body::Moon).unwrap();
+        let (x, y) = frame.field.projection.pixel(&body.position).unwrap();
+        assert!((x - 512.0).hypot(y - 384.0) < 2.0 && frame.picture.row(384)[512][0] > 0.0, "{x} {y}");
+        assert!(lights.picture > 0.0);
+
+        for date in ["1400-06-01T00:00:00Z", "2600-06-01T00:00:00Z"] {
+            let far = Moment::at(Utc::from_rfc3339(date).unwrap());
+            let (frame, ..) = towards(&moon, &far, 21.0, Method::Tr99);
+            assert!(frame.found.bodies.is_empty() && !frame.picture.is_black(), "{date}");
+        }
     }
 
     #[test]

@@ -30,6 +30,9 @@ fn show_answers_with_every_key_and_erfas_numbers() {
         "type",
         "constellation",
         "names",
+        "distance_pc",
+        "absolute_v_mag",
+        "hand_controllers_place",
     ];
     wanted.sort_unstable();
     assert_eq!(keys, wanted);

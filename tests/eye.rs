@@ -179,6 +179,11 @@ fn tonight_ranks_what_stands_high_enough_and_can_be_seen() {
         assert!(number(row, "alt_deg") >= 25.0 && number(row, "reserve") > 0.0, "{row}");
         assert!(number(row, "v_mag") < 15.0 && row["best_eyepiece_mm"].is_number(), "{row}");
     }
+    // The Moon is up: what is listed risen or not is the telescope's, not the night's.
+    let site = ["tonight", "--site", "60.17,24.94,30", "--at", "2026-11-22T20:00:00Z", "--sky", "20.8", "--json"];
+    let all = json(&[&site[..], &["--minimum-altitude", "-90"]].concat());
+    assert!(all.as_array().unwrap().len() >= 611, "the thesis had 611");
+    assert!(rows.iter().any(|row| row["name"] == "Saturn") && rows.iter().all(|row| row["name"] != "Sun"));
     let nowhere = scotopic(&["tonight"]);
     assert_eq!(nowhere.status.code(), Some(2), "{}", String::from_utf8_lossy(&nowhere.stderr));
 }

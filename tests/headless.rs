@@ -183,9 +183,12 @@ fn card(picture: &RgbImage) -> Option<(u32, u32, u32)> {
     found.filter(|_| best > 90)
 }
 
-/// What stands where every menu of an eyepiece of 24 mm has its lines.
+/// What stands on the card of the menu; nothing without one.
 fn inside(picture: &RgbImage) -> Vec<u8> {
-    (285..485).flat_map(|y| (850..1010).flat_map(move |x| picture.get_pixel(x, y).0)).collect()
+    let Some((edge, top, bottom)) = card(picture) else { return Vec::new() };
+    // Its left edge is found, or its right one.
+    let (from, to) = if edge < 900 { (edge + 5, (edge + 150).min(1010)) } else { (edge - 150, edge - 5) };
+    (top..bottom).flat_map(|y| (from..to).flat_map(move |x| picture.get_pixel(x, y).0)).collect()
 }
 
 /// Everything on the card is red or black: nothing of the sky is read through it.

@@ -62,6 +62,9 @@ fn m31() -> Object {
         axes_arcmin: Some((177.83, 69.66)),
         position_angle: Some(Angle::degrees(35.0)),
         surface_brightness: Some(SurfaceBrightness(22.16)),
+
+        distance: None,
+        hand_controllers_place: false,
         constellation: "And",
     }
 }

@@ -9,6 +9,7 @@ use crate::eye::{Adaptation, Lamp};
 use crate::overlay::exposure::{Exposure, exposure};
 use crate::overlay::facts::Choices;
 use crate::overlay::style::{Eye, Style};
+use crate::overlay::tone::{Display, RED_SHARE, Toning};
 use crate::picture::Picture;
 
 /// Steps of the overlay's brightness.
@@ -23,31 +24,24 @@ const LOOKED_S: f64 = 600.0;
 /// Within so many minutes the eye shall be back.
 const BACK_MIN: f64 = 1.0;
 
-/// Share of white's luminance that the red primary has: text and marks are red alone.
-const RED: f64 = 0.2126;
-
 /// A magnitude is so many powers of ten, inverted.
 const MAGNITUDES: f64 = 2.5;
 
 /// The observer, as the session knows them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Observer {
     /// The eye, and the sky above it.
     pub eye: Eye,
     /// Which facts are wanted.
     pub facts: Choices,
-    /// Luminance of full white at the eye, cd/m2: the settings' `light.luminance_cd_m2`.
-    pub full_cd_m2: f64,
+    /// What the projector gives at the eye: white as the settings' `light.luminance_cd_m2`, black as measured or assumed.
+    pub display: Display,
+    /// How the light is toned to begin with.
+    pub tone: Toning,
     /// Whether the projector's LEDs are dimmed, rather than the picture.
     pub lamps_dim: bool,
     /// Whether anything may be drawn that is not red.
     pub white: bool,
-}
-
-impl Default for Observer {
-    fn default() -> Observer {
-        Observer { eye: Eye::default(), facts: Choices::default(), full_cd_m2: 0.3, lamps_dim: false, white: false }
-    }
 }
 
 impl Observer {
@@ -59,9 +53,9 @@ impl Observer {
         let (lamp, share) = if self.white {
             (Lamp::White, f64::from(style.photograph))
         } else {
-            (Lamp::LcdRed, RED * f64::from(style.text))
+            (Lamp::LcdRed, RED_SHARE * f64::from(style.text))
         };
-        let borne = brightest_for(lamp, LOOKED_S, BACK_MIN, None) / (share * self.full_cd_m2).max(1e-12);
+        let borne = brightest_for(lamp, LOOKED_S, BACK_MIN, None) / (share * self.display.full_cd_m2).max(1e-12);
         ((borne * f64::from(STEPS)).floor().min(f64::from(WANTED)) as u8).max(1)
     }
 }
@@ -79,7 +73,11 @@ impl Adapting {
     /// A picture is shown at a brightness of 1 to 10.
     pub fn lit(&mut self, picture: &Picture, observer: &Observer, brightness: u8) {
         let dimmed = if observer.lamps_dim { f64::from(brightness) / f64::from(STEPS) } else { 1.0 };
-        self.light = Some(exposure(picture, observer.full_cd_m2 * dimmed)).filter(|light| light.lit > 0.0);
+        self.light = Some(exposure(picture, observer.display.full_cd_m2 * dimmed)).filter(|light| light.lit > 0.0);
+        // What a black pixel lets through lies over the object too.
+        if let Some(light) = &mut self.light {
+            light.middle_cd_m2 += observer.display.black_cd_m2 * dimmed;
+        }
     }
 
     /// Time passes.
@@ -116,11 +114,8 @@ impl Adapting {
         } else {
             format!("−{loss:.1} mag*, back in {:.1} min*", self.pigment.minutes_until_back())
         };
-        let cost = format!(
-            "while lit −{:.1}, object −{:.1} (*our scale)",
-            self.while_lit_magnitudes(),
-            self.on_object_magnitudes(background_cd_m2)
-        );
+        let taken = 1.0 - 10f64.powf(-self.on_object_magnitudes(background_cd_m2) / MAGNITUDES);
+        let cost = format!("lit −{:.1} mag, contrast −{:.0} % (*our own)", self.while_lit_magnitudes(), 100.0 * taken);
         [format!("eye {} {state}", self.bar(8)), cost]
     }
 }
@@ -132,12 +127,12 @@ mod tests {
     #[test]
     fn red_words_may_be_as_bright_as_wanted_and_white_pictures_may_not() {
         assert_eq!(Observer::default().brightness(), WANTED);
-        let white = Observer { white: true, full_cd_m2: 0.1, ..Observer::default() };
+        let white = Observer { white: true, display: Display::assumed(0.1), ..Observer::default() };
         assert!(white.brightness() < WANTED);
-        let glaring = Observer { full_cd_m2: 1e4, ..white.clone() };
+        let glaring = Observer { display: Display::assumed(1e4), ..white.clone() };
         assert_eq!(glaring.brightness(), 1);
         // What is chosen keeps the promise: ten minutes, then a minute of dark.
-        let luminance = 0.6 * white.full_cd_m2 * f64::from(white.brightness()) / 10.0;
+        let luminance = 0.6 * white.display.full_cd_m2 * f64::from(white.brightness()) / 10.0;
         let eye = Adaptation::default().after(Lamp::White, luminance, None, LOOKED_S);
         assert!(eye.minutes_until_back() <= BACK_MIN, "{luminance}: {}", eye.minutes_until_back());
     }
@@ -146,7 +141,7 @@ mod tests {
     fn a_white_screen_costs_and_the_dark_gives_back() {
         let mut picture = Picture::black(16, 16);
         picture.pixels_mut().fill([1.0; 3]);
-        let observer = Observer { full_cd_m2: 1.8, ..Observer::default() };
+        let observer = Observer { display: Display::assumed(1.8), ..Observer::default() };
         let mut eye = Adapting::default();
         eye.lit(&picture, &observer, 10);
         for _ in 0..60 {
@@ -160,6 +155,18 @@ mod tests {
         eye.pass(Duration::from_secs_f64(minutes * 60.0 + 1.0));
         assert_eq!(eye.pigment.minutes_until_back(), 0.0);
         assert_eq!((eye.while_lit_magnitudes(), eye.on_object_magnitudes(4e-5)), (0.0, 0.0));
+    }
+
+    /// A veil of a quarter of the sky takes a fifth of the contrast; here all of it is the projector's black.
+    #[test]
+    fn a_black_that_is_not_black_takes_contrast_from_the_object_and_is_told() {
+        let mut picture = Picture::black(100, 100);
+        picture.row_mut(0).fill([0.5, 0.0, 0.0]);
+        let display = Display { black_cd_m2: 1e-5, ..Display::assumed(0.3) };
+        let mut eye = Adapting::default();
+        eye.lit(&picture, &Observer { display, ..Observer::default() }, 10);
+        assert!((10f64.powf(-0.4 * eye.on_object_magnitudes(4e-5)) - 0.8).abs() < 1e-9);
+        assert!(eye.words(4e-5)[1].contains("contrast −20 %"), "{:?}", eye.words(4e-5));
     }
 
     #[test]

@@ -48,6 +48,18 @@ pub enum Action {
     OverlayBrighter,
     /// The picture in the eyepiece dimmer.
     OverlayDimmer,
+    /// The picture brighter beside the object's own light.
+    PictureBrighter,
+    /// The picture dimmer beside the object's own light.
+    PictureDimmer,
+    /// The words brighter beside the object's own light.
+    WordsBrighter,
+    /// The words dimmer beside the object's own light.
+    WordsDimmer,
+    /// Picture and words as bright as the projector's brightness makes them.
+    LightByItself,
+    /// The next operator that tones the light.
+    ToneMethod,
     /// This screen brighter.
     ScreenBrighter,
     /// This screen dimmer.
@@ -287,6 +299,60 @@ pub const COMMANDS: &[Command] = &[
         &[Key::Char(','), Key::Char('<')],
         "dimmer overlay",
         "the picture in the eyepiece dimmer",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::PictureBrighter,
+        "picture-brighter",
+        &[Key::Char(']')],
+        "picture up",
+        "the picture brighter beside the object's own light",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::PictureDimmer,
+        "picture-dimmer",
+        &[Key::Char('[')],
+        "picture down",
+        "the picture dimmer beside the object's own light",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::WordsBrighter,
+        "words-brighter",
+        &[Key::Char('}')],
+        "words up",
+        "the words brighter; never brighter than the picture",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::WordsDimmer,
+        "words-dimmer",
+        &[Key::Char('{')],
+        "words down",
+        "the words dimmer beside the object's own light",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::LightByItself,
+        "light-by-itself",
+        &[Key::Char('n')],
+        "plain light",
+        "picture and words only by the overlay's brightness",
+        Where::Everywhere,
+        When::AnyTime,
+    ),
+    row(
+        Action::ToneMethod,
+        "tone",
+        &[Key::Char('t')],
+        "tone",
+        "the next operator: tr93, tr99, ward, linear",
         Where::Everywhere,
         When::AnyTime,
     ),

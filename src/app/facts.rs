@@ -58,10 +58,16 @@ pub fn of(object: &Object, instrument: &Instrument, observer: &Observer) -> Vec<
     let place = &object.astrometry.position;
     let told = facts::of(object, instrument, &observer.eye, &observer.facts);
     let lines = told.into_iter().flat_map(|told| match told.fact {
-        Fact::Position => vec![
-            ("RA J2000", HoursMinutesSeconds(place.ra()).to_string()),
-            ("Dec J2000", DegreesMinutesSeconds(place.dec()).to_string()),
-        ],
+        Fact::Position => {
+            let mut lines = vec![
+                ("RA J2000", HoursMinutesSeconds(place.ra()).to_string()),
+                ("Dec J2000", DegreesMinutesSeconds(place.dec()).to_string()),
+            ];
+            if object.hand_controllers_place {
+                lines.push(("place", "the hand controller's own".to_owned()));
+            }
+            lines
+        }
         Fact::Charts => {
             vec![("U2000", atlas::uranometria(place).to_string()), ("Millennium", atlas::millennium(place).to_string())]
         }

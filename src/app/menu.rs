@@ -45,7 +45,7 @@ pub struct Menu {
 }
 
 /// The lines of the page of commands, and what choosing each does.
-pub const LINES: [Action; 10] = [
+pub const LINES: [Action; 14] = [
     Action::NextEyepiece,
     Action::OverlayMode,
     Action::Photographs,
@@ -53,6 +53,10 @@ pub const LINES: [Action; 10] = [
     Action::Animation,
     Action::OverlayBrighter,
     Action::OverlayDimmer,
+    Action::PictureBrighter,
+    Action::PictureDimmer,
+    Action::WordsBrighter,
+    Action::WordsDimmer,
     Action::NextObject,
     Action::EyepieceHelp,
     Action::MenuClose,
@@ -126,6 +130,16 @@ fn line(model: &Model, action: Action) -> Entry {
         }
         Action::OverlayBrighter => ("brighter", format!("{} of 10", overlay.brightness)),
         Action::OverlayDimmer => ("dimmer", String::new()),
+        Action::PictureBrighter => {
+            let lights = model.lights();
+            ("picture up", format!("{:+.1} mag", lights.over_own_mag(lights.picture_cd_m2())))
+        }
+        Action::PictureDimmer => ("picture down", String::new()),
+        Action::WordsBrighter => {
+            let lights = model.lights();
+            ("words up", format!("{:+.1} mag", lights.over_own_mag(lights.captions_cd_m2())))
+        }
+        Action::WordsDimmer => ("words down", String::new()),
         Action::NextObject => ("next object", model.next_in_field().map_or_else(String::new, |name| cut(name, 10))),
         Action::EyepieceHelp => ("help", String::new()),
         _ => ("close", String::new()),

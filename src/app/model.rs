@@ -13,7 +13,8 @@ use super::scene::Scene;
 use super::search::Search;
 use crate::hw::mount::belief::Belief;
 use crate::overlay::animation::Playable;
-use crate::overlay::style::Mode;
+use crate::overlay::style::{Mode, Style};
+use crate::overlay::tone::{Lights, Toning};
 use crate::picture::Picture;
 use crate::safety::suspend::Clocks;
 use crate::safety::{Acknowledgement, Clock, Fix, Rules, TurnCounter};
@@ -166,6 +167,8 @@ pub struct Overlay {
     pub facts: bool,
     /// Whether the object's animation is played.
     pub animation: bool,
+    /// The operator, and how bright picture and words are beside the object's own light.
+    pub tone: Toning,
 }
 
 /// All that the session knows.
@@ -247,6 +250,7 @@ impl Model {
                 photographs: true,
                 facts: true,
                 animation: false,
+                tone: opening.observer.tone,
             },
             menu: None,
             played: Duration::ZERO,
@@ -313,6 +317,18 @@ impl Model {
         let current = self.target.as_ref().and_then(|target| names.iter().position(|name| *name == target.name));
         let next = current.map_or(0, |place| place + 1);
         names.get(next).or(names.first()).copied()
+    }
+
+    /// How bright picture and words are, and what that is beside the target's own light.
+    #[must_use]
+    pub fn lights(&self) -> Lights {
+        let observer = &self.opening.observer;
+        let style = Style {
+            tone: self.overlay.tone,
+            display: observer.display.dimmed(f64::from(self.overlay.brightness) / 10.0),
+            ..Style::default()
+        };
+        Lights::of(self.target.as_ref(), &self.instrument, &observer.eye, &style)
     }
 
     /// Opens a page of the menu in the eyepiece.

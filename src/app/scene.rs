@@ -2,6 +2,7 @@
 
 use crate::overlay::menu::Menu;
 use crate::overlay::style::Mode;
+use crate::overlay::tone::Toning;
 use crate::sky::catalogue::Object;
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::Pointing;
@@ -32,6 +33,8 @@ pub struct Scene {
     pub mode: Mode,
     /// How bright the picture is, 0 to 1.
     pub brightness: f32,
+    /// The operator, and how bright picture and words are beside the object's own light.
+    pub tone: Toning,
     /// The object whose facts are told, if one was chosen.
     pub target: Option<Object>,
     /// Whether photographs are drawn.
@@ -59,6 +62,6 @@ impl Scene {
                 != (&drawn.instrument, drawn.mode, drawn.brightness, &drawn.target)
             || (self.photographs, self.facts, self.animation, &self.menu)
                 != (drawn.photographs, drawn.facts, drawn.animation, &drawn.menu)
-            || self.site != drawn.site
+            || (self.site, self.tone) != (drawn.site, drawn.tone)
     }
 }

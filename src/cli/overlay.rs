@@ -8,11 +8,14 @@ use clap::Args;
 use serde::Serialize;
 
 use super::photographs::album::{Album, Sources};
+use super::projector::light;
 use super::settings::Settings;
 use super::settings::calibration::{self, Kept};
 use super::settings::disk::Files;
 use super::{Failure, answer, answer_json, note, photographs};
+use crate::eye::tone::Method;
 use crate::overlay::globe::Map;
+use crate::overlay::tone::{Lights, Toning};
 use crate::overlay::{Composer, Eye, Mode, Palette, Photograph, Style, compose};
 use crate::picture::png;
 use crate::pipeline::{self, Frame, View};
@@ -62,7 +65,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     pub soften_stars: Option<f32>,
     /// Folder of maps of Sun, Moon and planets to wrap on their discs: moon.jpg, jupiter.png..., equirectangular, longitude
-    /// -180 degrees at the left edge
+    /// -180 degrees at the left edge [default: the settings']
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,
     /// TT - UT1 in seconds (default: measured, then Espenak and Meeus)
@@ -86,6 +89,15 @@ pub struct Arguments {
     /// Overall brightness, 0 to 1
     #[arg(long, value_name = "GAIN", default_value_t = 1.0)]
     pub gain: f32,
+    /// Operator that tones picture and words: tr93, tr99, ward or linear [default: the settings', else tr93]
+    #[arg(long, value_name = "METHOD")]
+    pub tone: Option<Method>,
+    /// White of pictures, in magnitudes brighter than the object's own surface [default: the settings', else as --gain makes it]
+    #[arg(long, value_name = "MAG", allow_hyphen_values = true)]
+    pub picture_mag: Option<f64>,
+    /// The same of words and marks, which are never brighter than the picture's white
+    #[arg(long, value_name = "MAG", allow_hyphen_values = true)]
+    pub words_mag: Option<f64>,
     /// Write the picture to this PNG file
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -118,6 +130,45 @@ struct Answer<'a> {
     /// Whose they are, and on which terms.
     credits: Vec<String>,
     black: bool,
+    tone: Option<Tone>,
+}
+
+/// How bright it was made, in cd/m2 at the eye.
+#[derive(Debug, Serialize)]
+struct Tone {
+    method: Method,
+    clamped: bool,
+    adaptation_world: f64,
+    adaptation_display: f64,
+    display_white: f64,
+    display_black: f64,
+    display_measured: bool,
+    object: f64,
+    object_is_sky: bool,
+    picture_white: f64,
+    words: f64,
+    picture_over_object_mag: f64,
+    words_over_object_mag: f64,
+}
+
+impl Tone {
+    fn of(lights: &Lights) -> Tone {
+        Tone {
+            method: lights.method,
+            clamped: lights.clamped,
+            adaptation_world: lights.adapted.world_cd_m2,
+            adaptation_display: lights.adapted.display_cd_m2,
+            display_white: lights.display.full_cd_m2,
+            display_black: lights.display.black_cd_m2,
+            display_measured: lights.display.measured,
+            object: lights.own_cd_m2,
+            object_is_sky: !lights.of_object,
+            picture_white: lights.picture_cd_m2(),
+            words: lights.captions_cd_m2(),
+            picture_over_object_mag: lights.over_own_mag(lights.picture_cd_m2()),
+            words_over_object_mag: lights.over_own_mag(lights.captions_cd_m2()),
+        }
+    }
 }
 
 /// Runs the subcommand; what the command line leaves out comes from the settings.
@@ -143,7 +194,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         Some(object) => object.astrometry,
         None => Astrometry::fixed(position(arguments)?),
     };
-    let style = Style { facts: settings.facts.clone(), ..style(arguments)? };
+    let style = style(arguments, settings)?;
     let eye = Eye { sky: sky_brightness(arguments.sky_brightness, settings)?, pupil_mm: settings.pupil_mm };
     let soften = arguments.soften_stars.unwrap_or(settings.soften_stars);
     let mut album = Album::open(Sources {
@@ -152,7 +203,7 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         soften_stars: within("--soften-stars", f64::from(soften), 0.0, 1.0)? as f32,
     })?;
 
-    let mut composer = Composer::default().with_maps(maps(arguments.maps.as_deref())?);
+    let mut composer = Composer::default().with_maps(maps(arguments.maps.as_deref().or(settings.maps.as_deref()))?);
 
     // The field, what is in it, and the picture.
     let mut pointing = Pointing {
@@ -203,7 +254,9 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         photographs: photographs.iter().map(|photograph| photograph.name.as_str()).collect(),
         credits: photographs.iter().filter_map(Photograph::credit_line).collect(),
         black: picture.is_black(),
+        tone: composer.lights().map(Tone::of),
     };
+    composer.lights().map(Lights::notes).into_iter().flatten().for_each(|sentence| note(&sentence));
     if arguments.json {
         return answer_json(&shown);
     }
@@ -291,10 +344,24 @@ pub(super) fn sky_brightness(given: Option<f64>, settings: &Settings) -> Result<
     within("--sky-brightness", mag, 10.0, 25.0).map(SurfaceBrightness)
 }
 
-fn style(arguments: &Arguments) -> Result<Style, Failure> {
+fn style(arguments: &Arguments, settings: &Settings) -> Result<Style, Failure> {
     let palette = if arguments.red { Palette::Red } else { Palette::Natural };
     within("--gain", f64::from(arguments.gain), 0.0, 1.0)?;
-    Ok(Style { mode: arguments.mode, palette, gain: arguments.gain, ..Style::default() })
+    let tone = Toning {
+        method: arguments.tone.unwrap_or(settings.tone.method),
+        picture_over_object_mag: arguments.picture_mag.or(settings.tone.picture_over_object_mag),
+        captions_over_object_mag: arguments.words_mag.or(settings.tone.captions_over_object_mag),
+    };
+    tone.checked().map_err(Failure::Asked)?;
+    Ok(Style {
+        mode: arguments.mode,
+        palette,
+        gain: arguments.gain,
+        facts: settings.facts.clone(),
+        tone,
+        display: light::display(&settings.light)?.dimmed(f64::from(arguments.gain)),
+        ..Style::default()
+    })
 }
 
 /// Tells of photographs that do not show what they are named after.

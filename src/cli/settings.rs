@@ -11,6 +11,7 @@ use crate::eye::viewing::DARK_PUPIL_MM;
 use crate::hw::mount::address::MountAddress;
 use crate::hw::projector::{Placement, PlacementError, ProjectorAddress};
 use crate::overlay::facts::Choices;
+use crate::overlay::tone::Toning;
 use crate::safety::Rules;
 use crate::safety::rules::RuleError;
 use crate::sky::site::Site;
@@ -55,6 +56,10 @@ pub struct Settings {
     pub stellarium: Option<PathBuf>,
     /// How much of the light of stars in photographs is taken away: 0 nothing, 1 all.
     pub soften_stars: f32,
+    /// The folder of maps of Sun, Moon and planets.
+    pub maps: Option<PathBuf>,
+    /// The hand controller's own places of objects.
+    pub coordinates: Option<PathBuf>,
     /// Brightness of the sky's background at the zenith, V magnitudes per square arcsecond: 22 in the desert, 18 in a town.
     pub sky_brightness_mag_arcsec2: f64,
     /// Diameter of the observer's pupil in the dark, millimetres: 7 when young, 5.5 at seventy.
@@ -63,6 +68,8 @@ pub struct Settings {
     pub periodic_error_arcsec: f64,
     /// Which facts are told of an object.
     pub facts: Choices,
+    /// Which operator tones the overlay, and how bright it is beside the object's own light.
+    pub tone: Toning,
     /// Where the picture lies on the projector's own pixels.
     pub placement: Placement,
     /// The projector's light.
@@ -83,10 +90,13 @@ impl Default for Settings {
             photographs: None,
             stellarium: None,
             soften_stars: 0.0,
+            maps: None,
+            coordinates: None,
             sky_brightness_mag_arcsec2: 20.8,
             pupil_mm: DARK_PUPIL_MM,
             periodic_error_arcsec: 25.0,
             facts: Choices::default(),
+            tone: Toning::default(),
             placement: Placement::default(),
             light: light::Light::default(),
             handbox: handbox::Handbox::default(),
@@ -176,6 +186,8 @@ impl Settings {
         settings.instrument = settings.instrument.map(|file| folder.join(file));
         settings.photographs = settings.photographs.map(|file| folder.join(file));
         settings.stellarium = settings.stellarium.map(|file| folder.join(file));
+        settings.maps = settings.maps.map(|file| folder.join(file));
+        settings.coordinates = settings.coordinates.map(|file| folder.join(file));
         settings.handbox = settings.handbox.based_at(folder);
         settings.light = settings.light.based_at(folder);
         Ok(settings)
@@ -196,6 +208,13 @@ impl Settings {
             return Err(out_of_range(format!(
                 "soften_stars = {} is out of range: give 0 (stars as they are) to 1 (none)",
                 settings.soften_stars
+            )));
+        }
+        settings.tone.checked().map_err(out_of_range)?;
+        if !(settings.light.luminance_cd_m2 > 0.0 && settings.light.luminance_cd_m2 <= 1e4) {
+            return Err(out_of_range(format!(
+                "light.luminance_cd_m2 = {} is out of range: give more than 0, and at most 10000 cd/m2",
+                settings.light.luminance_cd_m2
             )));
         }
         if !(2.0..=9.0).contains(&settings.pupil_mm) {
@@ -298,6 +317,9 @@ mod tests {
             ("mount = \"usb\"", "'usb' is not a mount"),
             ("projector = \"beamer\"", "'beamer' is no projector"),
             ("sky_brightness_mag_arcsec2 = 3", "16 (a city)"),
+            ("[tone]\nmethod = \"reinhard\"", "`tr93`"),
+            ("[tone]\npicture_over_object_mag = 99", "tone.picture_over_object_mag = 99"),
+            ("[light]\nluminance_cd_m2 = nan", "light.luminance_cd_m2 = NaN"),
             ("pupil_mm = 70", "8 (a young one)"),
             ("[facts]\noff = [\"chart\"]", "`charts`"),
             ("[facts.types.planet]\noff = []", "planetary nebula"),

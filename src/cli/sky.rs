@@ -14,7 +14,7 @@ use crate::sky::astrometry::{Astrometry, Reduction};
 use crate::sky::atlas;
 use crate::sky::catalogue::{Band, Catalogue, Object, constellation};
 use crate::sky::coords::{Equatorial, J2000};
-use crate::sky::ephemeris::Body;
+use crate::sky::ephemeris::{Body, moons};
 use crate::sky::horizon::{self, Horizon};
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
@@ -33,7 +33,7 @@ pub enum Command {
 /// The settings of `sky show`.
 #[derive(Debug, Args)]
 pub struct ShowArguments {
-    /// A name: Jupiter, Moon, M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
+    /// A name: Jupiter, Io, Moon, M31, ngc 224, andromeda galaxy, Polaris, HIP 11767, C 14, alpha centauri, α Cen, 61 Cyg
     #[arg(value_name = "NAME", required_unless_present = "ra", conflicts_with = "ra")]
     pub name: Vec<String>,
     /// Right ascension (J2000) in degrees, in place of a name
@@ -112,10 +112,17 @@ struct Shown<'a> {
     r#type: Option<&'a str>,
     constellation: &'a str,
     names: &'a [String],
+    distance_pc: Option<f64>,
+    absolute_v_mag: Option<f64>,
+    hand_controllers_place: bool,
 }
 
 fn show(arguments: &ShowArguments, profile_site: Option<Site>) -> Result<(), Failure> {
-    if let Some(body) = Body::from_name(&arguments.name.join(" ")) {
+    let name = arguments.name.join(" ");
+    if let Some((planet, moon)) = moons::named(&name) {
+        return solar::show_moon(planet, moon, arguments, arguments.site.or(profile_site));
+    }
+    if let Some(body) = Body::from_name(&name) {
         return solar::show(body, arguments, arguments.site.or(profile_site));
     }
     let object = match (arguments.ra, arguments.dec) {
@@ -155,6 +162,9 @@ fn show(arguments: &ShowArguments, profile_site: Option<Site>) -> Result<(), Fai
             .as_ref()
             .map_or_else(|| constellation::at(&astrometry.position), |object| object.constellation),
         names: object.as_ref().map_or(&[], |object| &object.names),
+        distance_pc: object.as_ref().and_then(|object| object.distance).map(|distance| distance.parsec),
+        absolute_v_mag: object.as_ref().and_then(Object::absolute_magnitude),
+        hand_controllers_place: object.as_ref().is_some_and(|object| object.hand_controllers_place),
     };
     if arguments.json {
         return answer_json(&shown);
@@ -182,6 +192,9 @@ fn page(shown: &Shown<'_>, object: Option<&Object>, moment: &Moment) -> String {
         line("also", shown.names[1..].join(", "));
     }
     line("J2000", place(shown.ra_j2000_deg, shown.dec_j2000_deg));
+    if shown.hand_controllers_place {
+        line("", String::from("the hand controller's own place, from your list of coordinates"));
+    }
     let at = Equatorial::new(Angle::degrees(shown.ra_j2000_deg), Angle::degrees(shown.dec_j2000_deg));
     line("charts", format!("Uranometria 2000.0 {}, Millennium {}", atlas::uranometria(&at), atlas::millennium(&at)));
     line("of date", place(shown.ra_apparent_deg, shown.dec_apparent_deg));
@@ -221,6 +234,12 @@ fn describe(object: &Object, line: &mut impl FnMut(&str, String)) {
         let angle =
             object.position_angle.map_or(String::new(), |pa| format!(", position angle {:.0}°", pa.to_degrees()));
         line("size", format!("{major} x {minor} arcminutes{angle}"));
+    }
+    if let Some(distance) = object.distance {
+        let absolute =
+            object.absolute_magnitude().map_or(String::new(), |mag| format!(", absolute magnitude V {mag:.1}"));
+        let rough = if distance.rough { " (to a factor of 2)" } else { "" };
+        line("distance", format!("{}{rough}{absolute}", distance.words()));
     }
     if let Some(hubble) = object.hubble {
         line("Hubble type", hubble.to_owned());

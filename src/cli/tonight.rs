@@ -10,11 +10,12 @@ use super::settings::Settings;
 use super::{Failure, answer, answer_json, note};
 use crate::sky::astrometry::Reduction;
 use crate::sky::catalogue::Catalogue;
+use crate::sky::ephemeris::Ephemeris;
 use crate::sky::horizon::Horizon;
 use crate::sky::optics::Instrument;
 use crate::sky::site::Site;
 use crate::sky::time::{Moment, Utc};
-use crate::sky::tonight::{EXTINCTION, Wanted, Worth, worth_showing};
+use crate::sky::tonight::{EXTINCTION, Moving, Wanted, Worth, worth_showing};
 use crate::sky::{atlas, sun};
 use crate::units::{Angle, SurfaceBrightness};
 
@@ -28,7 +29,8 @@ const TOLD: usize = 25;
     scotopic tonight --site 60.17,24.94,30 --at 2026-11-22T20:00:00Z --minimum-altitude 25 --most 100 --json\n  \
     scotopic tonight --minimum-altitude -90 --most 0      every object that this telescope can show, risen or not\n\n\
     Objects are ranked by the reserve over the eye's threshold (Crumey 2014, behind the air) with the best eyepiece owned, by being\n\
-    listed (Messier, Caldwell, Herschel 400) and named, and by altitude. Moonlight and twilight are only in --sky.")]
+    listed (Messier, Caldwell, Herschel 400; Moon and planets count as Messier's) and named, and by altitude. --sky is the sky\n\
+    without Moon: its light is added (Krisciunas and Schaefer 1991), unless --minimum-altitude is below 0. Twilight is only in --sky.")]
 pub struct Arguments {
     /// Observing site in degrees, north and east positive, and metres [default: the settings']
     #[arg(long, value_name = "LAT,LON,ELEV", allow_hyphen_values = true)]
@@ -71,6 +73,8 @@ struct Row<'a> {
     alt_deg: f64,
     az_deg: f64,
     v_mag: Option<f64>,
+    v_mag_estimated: bool,
+    sky_mag_arcsec2: f64,
     size_arcmin: Option<[f64; 2]>,
     surface_brightness_mag_arcsec2: Option<f64>,
     reserve: f64,
@@ -108,7 +112,25 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
 
     let reduction = Reduction::at(&moment);
     let horizon = Horizon::new(&reduction, &site);
-    let worth = worth_showing(Catalogue::embedded(), &instrument, &reduction, &horizon, &wanted);
+    // Beyond the years of the ephemeris there is neither Moon nor planet, and that is said.
+    let moving = match Ephemeris::at(&moment) {
+        Ok(ephemeris) => Moving::at(&ephemeris, &site, wanted.extinction),
+        Err(error) => {
+            note(&format!("no Moon and no planets: {error}"));
+            Moving::default()
+        }
+    };
+    // Below the horizon it is the list of what this telescope can show at all, whatever the Moon does now.
+    let listed = wanted.minimum_altitude.to_radians() < 0.0;
+    let moving = Moving { moonlight: moving.moonlight.filter(|_| !listed), ..moving };
+    if let Some((light, _)) = moving.moonlight.filter(|(light, _)| light.altitude.to_radians() > 0.0) {
+        let zenith = light.on(wanted.sky, Angle::degrees(90.0), Angle::degrees(90.0) - light.altitude).0;
+        note(&format!(
+            "the Moon is up ({:.0}° high): the zenith is at {zenith:.1} instead of {sky} mag per square arcsecond",
+            light.altitude.to_degrees()
+        ));
+    }
+    let worth = worth_showing(Catalogue::embedded(), &instrument, &reduction, &horizon, &wanted, &moving);
     let most = match arguments.most {
         Some(0) => usize::MAX,
         Some(most) => most,
@@ -145,7 +167,9 @@ fn row<'a>(worth: &'a Worth, instrument: &Instrument) -> Row<'a> {
         dec_j2000_deg: place.dec().to_degrees(),
         alt_deg: worth.horizontal.altitude().to_degrees(),
         az_deg: worth.horizontal.azimuth().to_degrees(),
-        v_mag: object.v_magnitude().map(|v| v.0),
+        v_mag: object.v_magnitude().or_else(|| object.estimated_v_magnitude()).map(|v| v.0),
+        v_mag_estimated: worth.estimated,
+        sky_mag_arcsec2: worth.sky.0,
         size_arcmin: object.axes_arcmin.map(|(major, minor)| [major, minor]),
         surface_brightness_mag_arcsec2: object.surface_brightness.map(|mean| mean.0),
         reserve: worth.reserve,
@@ -167,13 +191,14 @@ fn line(row: &Row<'_>) -> String {
     let powers = row.useful_magnifications.map_or_else(String::new, |(low, high)| format!(" ({low:.0}-{high:.0}x)"));
     let wide = if row.larger_than_field { ", larger than the field" } else { "" };
     format!(
-        "{:<17}{:<23}{:<4}{:>5.0}{:>5.0}{:>6.1}  {size:<14}{:+.2} {:<15} {eyepiece}{powers}{wide}",
+        "{:<17}{:<23}{:<4}{:>5.0}{:>5.0}{:>6.1}{} {size:<14}{:+.2} {:<15} {eyepiece}{powers}{wide}",
         row.name,
         row.r#type,
         row.constellation,
         row.alt_deg,
         row.az_deg,
         row.v_mag.unwrap_or(f64::NAN),
+        if row.v_mag_estimated { '~' } else { ' ' },
         row.reserve,
         row.verdict,
     )

@@ -98,6 +98,29 @@ pub fn useful(object: &Patch, viewing: &Viewing, sky: SurfaceBrightness, model: 
     }
 }
 
+/// No higher power shows a planet better under [`SEEING_ARCSEC`]: they would be 8 arcminutes at the eye.
+const MOST_POWER: f64 = 250.0;
+
+/// So many times its width the field should show of a bright disc.
+const ROOM_OF_DISC: f64 = 1.1;
+
+/// The powers of Moon and planets: bright discs bear any, so the best eyepiece is not the model's but the highest power up to
+/// 250 (and an exit pupil of 0.5 mm) whose field shows the whole disc; without one, the lowest. A documented rule, not a model.
+#[must_use]
+pub fn of_disc(disc: &Patch, viewing: &Viewing, sky: SurfaceBrightness, owned: &[Choice]) -> Powers {
+    let most = MOST_POWER.min(viewing.aperture_mm / NARROWEST_PUPIL_MM);
+    let lowest = (viewing.aperture_mm / viewing.pupil_mm).min(most);
+    let reserve_at =
+        |magnification| Reading::of(disc, &Viewing { magnification, ..*viewing }, sky, Model::Crumey).reserve();
+    let shows_all = |choice: &Choice| choice.true_field_arcmin >= ROOM_OF_DISC * disc.major_arcmin;
+    let fits = |choice: &Choice| choice.magnification <= most * 1.001 && shows_all(choice);
+    let useful: Vec<usize> = (0..owned.len()).filter(|index| fits(&owned[*index])).collect();
+    let by_power = |a: &usize, b: &usize| owned[*a].magnification.total_cmp(&owned[*b].magnification);
+    let best = useful.iter().copied().max_by(by_power).or_else(|| (0..owned.len()).min_by(by_power));
+    let best_reserve = best.map(|index| reserve_at(owned[index].magnification)).filter(|reserve| !reserve.is_nan());
+    Powers { range: Some((lowest, most)), overflows: !owned.iter().any(shows_all), useful, best, best_reserve }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

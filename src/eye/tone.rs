@@ -5,13 +5,16 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 /// Tumblin and Rushmeier's operator of 1993.
 mod tr93;
 /// Its revision of 1999.
 mod tr99;
 
 /// Which operator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Tumblin and Rushmeier (1993): equal brightness by Stevens' law. The thesis' own.
     #[default]
@@ -27,6 +30,13 @@ pub enum Method {
 impl Method {
     /// All of them.
     pub const ALL: [Method; 4] = [Method::Tr93, Method::Tr99, Method::Ward, Method::Linear];
+
+    /// The next one, round and round: what one key does.
+    #[must_use]
+    pub fn next(self) -> Method {
+        let place = Method::ALL.iter().position(|method| *method == self).unwrap_or(0);
+        Method::ALL[(place + 1) % Method::ALL.len()]
+    }
 
     /// Its name on the command line.
     #[must_use]
@@ -119,6 +129,18 @@ pub fn display_luminance(method: Method, adapted: &Adapted, luminance_cd_m2: f64
     Toned { display_cd_m2: held, clamped: raised || held != shown }
 }
 
+/// How much steeper than the scene the display is: all four operators are powers, L_d ~ L^exponent.
+#[must_use]
+pub fn exponent(method: Method, adapted: &Adapted) -> f64 {
+    let least = least_adaptation_cd_m2(method);
+    let (world, display) = (adapted.world_cd_m2.max(least), adapted.display_cd_m2.max(least));
+    match method {
+        Method::Tr93 => tr93::alpha(world) / tr93::alpha(display),
+        Method::Tr99 => tr99::gamma(world) / tr99::gamma(display),
+        Method::Ward | Method::Linear => 1.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,6 +196,18 @@ mod tests {
                         before = shown;
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn each_operator_is_a_power_of_the_luminance_with_the_exponent_told() {
+        for method in Method::ALL {
+            for (world, display) in [(1e-8, 0.3), (0.01, 0.03), (3.0, 0.1), (1e4, 1.0)] {
+                let adapted = adapted(world, display);
+                let shown = |luminance| display_luminance(method, &adapted, luminance).display_cd_m2;
+                let slope = (shown(2e-3) / shown(1e-3)).log2();
+                assert!((slope - exponent(method, &adapted)).abs() < 1e-9, "{method} {world} {display}: {slope}");
             }
         }
     }

@@ -7,8 +7,10 @@ use super::layout::{self, Beside, Line};
 use super::marks::{self, Outline};
 use super::menu::{Menu, Placed};
 use super::photograph::Photograph;
+use super::stars::Starlight;
 use super::style::{Eye, Mode, Style};
 use super::text::{Scribe, Weight};
+use super::tone::{Curve, Lights};
 use super::{colour, information, stars};
 use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
@@ -49,11 +51,14 @@ pub struct Composer {
     photographs: Option<Laid>,
     almanac: Almanac,
     maps: Vec<Map>,
+    curve: Option<Curve>,
+    lights: Option<Lights>,
+    discs: globe::Kept,
 }
 
 /// Photographs laid on a canvas, and for which view.
 struct Laid {
-    view: (Projection, Region, Style, Option<SurfaceBrightness>, Vec<String>),
+    view: (Projection, Region, Style, f32, Option<SurfaceBrightness>, Vec<String>),
     picture: Picture,
     /// Whose they are and on which terms they are shown, of those that are seen.
     credits: Vec<String>,
@@ -77,7 +82,14 @@ impl Composer {
     #[must_use]
     pub fn with_maps(mut self, maps: Vec<Map>) -> Composer {
         self.maps = maps;
+        self.discs = globe::Kept::default();
         self
+    }
+
+    /// How bright the last picture's parts were made, and why; nothing when it was black.
+    #[must_use]
+    pub fn lights(&self) -> Option<&Lights> {
+        self.lights.as_ref()
     }
 
     /// Where the bodies of the solar system are, remembered from frame to frame.
@@ -90,6 +102,7 @@ impl Composer {
     #[must_use]
     pub fn compose(&mut self, scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> Picture {
         let (width, height) = (field.width_px, field.height_px);
+        self.lights = None;
         if !field.may_draw || (style.mode == Mode::Off && scene.menu.is_none()) {
             return Picture::black(width, height);
         }
@@ -98,13 +111,23 @@ impl Composer {
             return Picture::black(width, height);
         };
 
+        // Pictures and captions by one operator; from here on the style's shares of light are the toned ones.
+        let target = scene.target.cloned().or_else(|| standing_out(scene, field));
+        let lights = Lights::of(target.as_ref(), &field.instrument, eye, style);
+        let stars = lights.picture / style.photograph.max(1e-6);
+        let style = &Style { photograph: lights.picture, text: lights.text, marks: lights.marks, ..style.clone() };
+        if self.curve.as_ref().is_none_or(|curve| curve.exponent() != lights.exponent) {
+            self.curve = Some(Curve::new(lights.exponent));
+        }
+        self.lights = Some(lights);
+
         let visible = Region::new(width, height, vec![eyepiece_disc(field)]);
         let em_px = layout::text_px(field, style);
         let menu = scene.menu.and_then(|menu| Placed::find(menu, &mut self.scribe, em_px, size, &visible));
         let mut picture = if style.mode == Mode::Off {
             Picture::black(width, height)
         } else {
-            self.sky(&mut ink, scene, field, eye, style, &visible, menu.as_ref().map(|menu| menu.area))
+            self.sky(&mut ink, scene, target, field, eye, style, stars, &visible, menu.as_ref().map(|menu| menu.area))
         };
         if let Some(menu) = &menu {
             // What is in the holder is always told under the list.
@@ -126,13 +149,14 @@ impl Composer {
         &mut self,
         ink: &mut Ink,
         scene: &Scene,
+        target: Option<Object>,
         field: &FieldOfView,
         eye: &Eye,
         style: &Style,
+        stars: f32,
         visible: &Region,
         menu: Option<Area>,
     ) -> Picture {
-        let target = scene.target.cloned().or_else(|| standing_out(scene, field));
         let view = view(field, style, target.as_ref(), visible);
 
         // The sky: photographs or a moving picture, stars, outlines.
@@ -140,13 +164,14 @@ impl Composer {
         let own = target.as_ref().and_then(|target| target.surface_brightness);
         let (mut picture, mut credits) = self.photographs(still, field, style, own, &view);
         if let Some(frame) = scene.animation
-            && frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style, 1.0))
+            && frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style, &self.curve, 1.0))
         {
             credits.extend(frame.credit_line());
         }
         let photographed = !still.is_empty() || scene.animation.is_some();
-        draw_stars(&mut picture, scene, field, style, &view, photographed);
-        draw_bodies(&mut picture, scene, style, &view, &self.maps);
+        let starlight = Starlight { palette: style.palette, share: stars };
+        draw_stars(&mut picture, scene, field, starlight, &view, photographed);
+        draw_bodies(&mut picture, scene, style, starlight, &view, &self.maps, &self.curve, &mut self.discs);
         let outlines = outlines(scene, &view);
         self.draw_marks(&mut picture, ink, &outlines, target.as_ref(), field, style, &view, visible);
 
@@ -180,7 +205,8 @@ impl Composer {
             return (Picture::black(field.width_px, field.height_px), Vec::new());
         }
         let names = all.iter().map(|photograph| photograph.name.clone()).collect();
-        let wanted = (view.projection, view.region.clone(), style.clone(), own, names);
+        let exponent = self.curve.as_ref().map_or(1.0, Curve::exponent);
+        let wanted = (view.projection, view.region.clone(), style.clone(), exponent, own, names);
         if let Some(laid) = self.photographs.as_ref().filter(|laid| laid.view == wanted) {
             return (laid.picture.clone(), laid.credits.clone());
         }
@@ -189,7 +215,7 @@ impl Composer {
         let mut finest_last: Vec<&Photograph> = all.iter().collect();
         finest_last.sort_by(|a, b| b.plate.scale().to_radians().total_cmp(&a.plate.scale().to_radians()));
         for photograph in finest_last {
-            let light = photographs_light(style, photograph.gain(own));
+            let light = photographs_light(style, &self.curve, photograph.gain(own));
             if photograph.draw(&mut picture, &view.region, &view.projection, light) {
                 credits.extend(photograph.credit_line());
             }
@@ -437,10 +463,17 @@ impl Composer {
     }
 }
 
-/// A photograph's light, made brighter by `gain`, as the projector throws it.
-fn photographs_light(style: &Style, gain: f32) -> impl Fn([f32; 3]) -> [f32; 3] {
+/// A photograph's light, made brighter by `gain`, as the projector throws it: toned, in the palette.
+fn photographs_light<'a>(
+    style: &Style,
+    curve: &'a Option<Curve>,
+    gain: f32,
+) -> impl Fn([f32; 3]) -> [f32; 3] + use<'a> {
     let (palette, share) = (style.palette, style.photograph);
-    move |light| colour::in_palette(palette, light).map(|channel| (channel * gain).min(1.0) * share)
+    move |light| {
+        let light = colour::in_palette(palette, light).map(|channel| (channel * gain).min(1.0));
+        curve.as_ref().map_or(light, |curve| curve.of(light)).map(|channel| channel.min(1.0) * share)
+    }
 }
 
 /// A text of at most so many characters; what is left out of its middle is an ellipsis, since terms stand at its end.
@@ -580,15 +613,27 @@ fn outlines(scene: &Scene, view: &View) -> Vec<(FieldObject, Outline)> {
 }
 
 /// Draws discs, and the moons that are neither behind them nor in their shadow.
-fn draw_bodies(picture: &mut Picture, scene: &Scene, style: &Style, view: &View, maps: &[Map]) {
-    let light = photographs_light(style, 1.0);
+#[expect(clippy::too_many_arguments, reason = "what is drawn, on what, and how: each is used once")]
+fn draw_bodies(
+    picture: &mut Picture,
+    scene: &Scene,
+    style: &Style,
+    starlight: Starlight,
+    view: &View,
+    maps: &[Map],
+    curve: &Option<Curve>,
+    discs: &mut globe::Kept,
+) {
+    let light = photographs_light(style, curve, 1.0);
+    let exponent = curve.as_ref().map_or(1.0, Curve::exponent);
+    let key = [style.palette as u32, style.photograph.to_bits(), exponent.to_bits()];
     for seen in &scene.found.bodies {
-        globe::draw(picture, &view.region, &view.projection, seen, maps, &light);
+        discs.draw(picture, &view.region, &view.projection, seen, maps, key, &light);
         for (moon, position) in seen.moons.iter().filter(|(moon, _)| !moon.hidden && !moon.eclipsed) {
             let Some((x, y)) = view.projection.pixel(position).filter(|(x, y)| view.region.contains(*x, *y)) else {
                 continue;
             };
-            stars::point(picture, &view.region, x, y, moon.magnitude.0 as f32, Some(0.8), style.palette);
+            stars::point(picture, &view.region, x, y, moon.magnitude.0 as f32, Some(0.8), starlight);
         }
     }
 }
@@ -603,7 +648,7 @@ fn draw_stars(
     picture: &mut Picture,
     scene: &Scene,
     field: &FieldOfView,
-    style: &Style,
+    starlight: Starlight,
     view: &View,
     photographed: bool,
 ) {
@@ -615,7 +660,7 @@ fn draw_stars(
         }
         let shown = photographed && picture.row(y as usize)[x as usize].iter().sum::<f32>() > 0.02;
         if !shown {
-            stars::draw(picture, &view.region, x, y, star, style.palette);
+            stars::draw(picture, &view.region, x, y, star, starlight);
         }
     }
 }
@@ -675,6 +720,48 @@ mod tests {
         for mode in [Mode::Over, Mode::Beside] {
             let picture = composed(&field_at(&ring(), 24.0), &Style { mode, ..style.clone() });
             assert!(picture.pixels().iter().all(|[r, g, b]| *r <= 0.2 && *g == 0.0 && *b == 0.0));
+        }
+    }
+
+    /// Section 8.6 of the thesis. Without stars and pictures all that is drawn is captions, the menu among them.
+    #[test]
+    fn no_caption_is_brighter_than_the_pictures_limit_whatever_is_asked() {
+        let target = ring();
+        let field = field_at(&target, 24.0);
+        let line =
+            |n: usize| super::super::menu::Entry { label: format!("line {n}"), value: "on".into(), chosen: n == 1 };
+        let menu = Menu { title: "menu".into(), lines: (0..5).map(line).collect(), bar: Some(2), hint: "?: on".into() };
+        let found = Found {
+            stars: Vec::new(),
+            ..Catalogue::embedded().within(&field.centre(), field.radius(), crate::units::Magnitude(20.0))
+        };
+        let scene = Scene {
+            found: &found,
+            target: Some(&target),
+            photographs: &[],
+            catalogue: Catalogue::embedded(),
+            animation: None,
+            menu: Some(&menu),
+        };
+        for (picture, captions, photograph) in
+            [(None, None, 0.6), (None, Some(15.0), 0.3), (Some(6.0), Some(9.0), 0.6), (Some(3.0), None, 0.6)]
+        {
+            for method in crate::eye::tone::Method::ALL {
+                let tone = super::super::tone::Toning {
+                    method,
+                    picture_over_object_mag: picture,
+                    captions_over_object_mag: captions,
+                };
+                let style = Style { tone, photograph, ..Style::default() };
+                let mut composer = Composer::default();
+                let shown = composer.compose(&scene, &field, &Eye::default(), &style);
+                let limit = composer.lights().unwrap().picture;
+                let brightest = shown.pixels().iter().flatten().copied().fold(0.0, f32::max);
+                assert!(
+                    brightest <= limit * 1.0001 && brightest > 0.0,
+                    "{method} {picture:?} {captions:?}: {brightest} over {limit}"
+                );
+            }
         }
     }
 

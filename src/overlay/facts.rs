@@ -163,7 +163,11 @@ pub fn of(object: &Object, instrument: &Instrument, eye: &Eye, choices: &Choices
 #[must_use]
 pub fn powers_of(object: &Object, instrument: &Instrument, eye: &Eye) -> Option<Powers> {
     let patch = object.heart()?;
-    Some(powers::useful(&patch, &instrument.viewing(eye.pupil_mm), eye.sky, Model::Crumey, &instrument.choices()))
+    let (viewing, owned) = (instrument.viewing(eye.pupil_mm), instrument.choices());
+    Some(match object.kind {
+        Kind::SolarSystem => powers::of_disc(&patch, &viewing, eye.sky, &owned),
+        _ => powers::useful(&patch, &viewing, eye.sky, Model::Crumey, &owned),
+    })
 }
 
 fn text(fact: Fact, object: &Object, instrument: &Instrument, eye: &Eye) -> Option<String> {
@@ -179,15 +183,17 @@ fn text(fact: Fact, object: &Object, instrument: &Instrument, eye: &Eye) -> Opti
                 object.position_angle.map(|angle| format!(" at {:.0}°", angle.to_degrees())).unwrap_or_default();
             Some(size(major, minor) + if major > minor { &angle } else { "" })
         }
-        Fact::Position => Some(position(&object.astrometry.position)),
+        Fact::Position => {
+            let whose = if object.hand_controllers_place { "   (hand controller's)" } else { "" };
+            Some(position(&object.astrometry.position) + whose)
+        }
         Fact::Magnitude => {
             let band = if object.band == Band::V { "V" } else { "B" };
-            object.magnitude.map(|magnitude| format!("{band} {:.1}", magnitude.0))
+            object.magnitude.map(|magnitude| format!("{band} {:.1}", magnitude.0).replace('-', "−"))
         }
         Fact::AbsoluteMagnitude => {
-            // M = V + 5 + 5 lg(parallax in arcseconds)
-            let at_10_pc = object.v_magnitude()?.0 + 5.0 * (parallax_mas(object)? / 100.0).log10();
-            Some(format!("{at_10_pc:.1}").replace('-', "−"))
+            let about = if object.distance?.rough { "about " } else { "" };
+            Some(format!("{about}{:.1}", object.absolute_magnitude()?).replace('-', "−"))
         }
         Fact::SurfaceBrightness => object.surface_brightness.map(|mean| format!("mean {:.1} mag/arcsec²", mean.0)),
         Fact::Contrast => {
@@ -202,10 +208,7 @@ fn text(fact: Fact, object: &Object, instrument: &Instrument, eye: &Eye) -> Opti
             Some(format!("{reserve}, {}{part}", reading.verdict().words()))
         }
         Fact::Power => power(&powers_of(object, instrument, eye)?, instrument),
-        Fact::Distance => {
-            let light_years = 3261.56 / parallax_mas(object)?;
-            Some(if light_years < 100.0 { format!("{light_years:.1} ly") } else { format!("{light_years:.0} ly") })
-        }
+        Fact::Distance => Some(object.distance?.words()),
         Fact::Charts => {
             let place = &object.astrometry.position;
             Some(format!("Uranometria {}, Millennium {}", atlas::uranometria(place), atlas::millennium(place)))
@@ -228,11 +231,6 @@ fn power(powers: &Powers, instrument: &Instrument) -> Option<String> {
         Some((low, high)) => format!("best {name} mm, {low:.0}–{high:.0}×{wide}"),
         None => format!("not seen; least badly {name} mm{wide}"),
     })
-}
-
-/// A parallax that says something: larger than a milliarcsecond, about its own error in the catalogue.
-fn parallax_mas(object: &Object) -> Option<f64> {
-    Some(object.astrometry.parallax_mas).filter(|parallax| *parallax > 1.0)
 }
 
 /// Right ascension and declination with a typographic minus.

@@ -97,6 +97,123 @@ pub fn draw(
     }
 }
 
+/// From this radius on a disc is kept from frame to frame; a smaller one is drawn anew as fast as it is copied.
+const KEPT_PX: f64 = 20.0;
+/// A change under this share of a pixel is not drawn anew.
+const UNSEEN_PX: f64 = 0.05;
+
+/// Discs drawn before, kept by all that they depend on.
+#[derive(Debug, Clone, Default)]
+pub struct Kept {
+    discs: Vec<Disc>,
+    /// How many were drawn, not copied.
+    drawn: usize,
+}
+
+/// A disc drawn before.
+#[derive(Debug, Clone)]
+struct Disc {
+    seen: InView,
+    projection: Projection,
+    region: Region,
+    /// What of the light changes its colours: palette, share and exponent, as bits.
+    light: [u32; 3],
+    /// The first row with light, and the rows.
+    top: usize,
+    rows: Picture,
+}
+
+impl Kept {
+    /// As [`draw`], but what did not change since it was drawn is copied. `light` stands for `colour`: a different one means
+    /// different colours. The maps stay the same as long as this lives.
+    #[expect(clippy::too_many_arguments, reason = "what is drawn, on what, and how: each is used once")]
+    pub fn draw(
+        &mut self,
+        picture: &mut Picture,
+        region: &Region,
+        projection: &Projection,
+        seen: &InView,
+        maps: &[Map],
+        light: [u32; 3],
+        colour: impl Fn([f32; 3]) -> [f32; 3],
+    ) {
+        let radius_px = projection.pixels(seen.globe.radius);
+        if radius_px.is_nan() || radius_px < KEPT_PX {
+            draw(picture, region, projection, seen, maps, colour);
+            return;
+        }
+        let place = self.discs.iter().position(|disc| disc.serves(seen, projection, region, light, picture, radius_px));
+        let place = place.unwrap_or_else(|| {
+            self.drawn += 1;
+            let mut alone = Picture::black(picture.width(), picture.height());
+            draw(&mut alone, region, projection, seen, maps, colour);
+            let lit = |y: &usize| alone.row(*y).iter().any(|pixel| *pixel != [0.0; 3]);
+            let top = (0..alone.height()).find(lit).unwrap_or(0);
+            let bottom = (top..alone.height()).rfind(lit).map_or(top, |y| y + 1);
+            let mut rows = Picture::black(alone.width(), bottom - top);
+            (top..bottom).for_each(|y| rows.row_mut(y - top).copy_from_slice(alone.row(y)));
+            self.discs.retain(|disc| disc.seen.body != seen.body);
+            self.discs.push(Disc {
+                seen: seen.clone(),
+                projection: *projection,
+                region: region.clone(),
+                light,
+                top,
+                rows,
+            });
+            self.discs.len() - 1
+        });
+        let disc = &self.discs[place];
+        for y in 0..disc.rows.height() {
+            for (sum, light) in picture.row_mut(disc.top + y).iter_mut().zip(disc.rows.row(y)) {
+                sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
+            }
+        }
+    }
+
+    /// How many discs were drawn rather than copied.
+    #[must_use]
+    pub fn drawn(&self) -> usize {
+        self.drawn
+    }
+}
+
+impl Disc {
+    fn serves(
+        &self,
+        seen: &InView,
+        projection: &Projection,
+        region: &Region,
+        light: [u32; 3],
+        picture: &Picture,
+        radius_px: f64,
+    ) -> bool {
+        let (was, is) = (&self.seen.globe, &seen.globe);
+        let same_place = || {
+            let (before, now) = (self.projection.pixel(&self.seen.position), projection.pixel(&seen.position));
+            before.zip(now).is_some_and(|(a, b)| (a.0 - b.0).hypot(a.1 - b.1) < UNSEEN_PX)
+        };
+        let turned = |was: DVec3, is: DVec3| (was - is).length() * radius_px < UNSEEN_PX;
+        let north = |projection: &Projection| {
+            let (x, y) = projection.direction_of(Angle::ZERO);
+            let (u, v) = projection.direction_of(Angle::degrees(90.0));
+            [DVec3::new(x, y, 0.0), DVec3::new(u, v, 0.0)]
+        };
+        let stands = || north(&self.projection).into_iter().zip(north(projection)).all(|(was, is)| turned(was, is));
+        self.seen.body == seen.body
+            && self.light == light
+            && self.region == *region
+            && self.rows.width() == picture.width()
+            && self.top + self.rows.height() <= picture.height()
+            && (self.projection.pixels(was.radius) - radius_px).abs() < UNSEEN_PX
+            && was.polar == is.polar
+            && turned(was.sun, is.sun)
+            && was.axes.iter().zip(is.axes).all(|(was, is)| turned(*was, is))
+            && same_place()
+            && stands()
+    }
+}
+
 fn mean_of_nine(light: impl Fn(f64, f64) -> [f32; 3]) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for dy in [-1.0, 0.0, 1.0] {
@@ -313,6 +430,34 @@ mod tests {
         }
         let picture = drawn(&mars, 150.0, &[Map::new(Body::Mars, map)]);
         assert!(picture.row(256)[256][0] > 0.5 && picture.row(256)[300][0] < 0.1);
+    }
+
+    #[test]
+    fn a_disc_that_did_not_change_is_copied_bit_for_bit_and_one_that_did_is_drawn_anew() {
+        let saturn = seen(Body::Saturn, "2032-05-01T00:00:00Z");
+        let projection = |x: f64, angle_deg: f64| {
+            Projection::new(&saturn.position, Angle::degrees(angle_deg), false, saturn.globe.radius / 60.0, (x, 256.0))
+        };
+        let region = Region::new(512, 512, vec![]);
+        let mut kept = Kept::default();
+        let mut frame = |x: f64, angle_deg: f64, seen: &InView, light: [u32; 3]| {
+            let mut picture = Picture::black(512, 512);
+            kept.draw(&mut picture, &region, &projection(x, angle_deg), seen, &[], light, |light| light);
+            let mut plain = Picture::black(512, 512);
+            draw(&mut plain, &region, &projection(x, angle_deg), seen, &[], |light| light);
+            assert_eq!(picture.pixels(), plain.pixels());
+            kept.drawn()
+        };
+        let later = seen(Body::Saturn, "2032-05-01T00:20:00Z");
+        let counts = [
+            frame(256.0, 0.0, &saturn, [1; 3]),
+            frame(256.0, 0.0, &saturn, [1; 3]),
+            frame(257.0, 0.0, &saturn, [1; 3]),
+            frame(257.0, 1.0, &saturn, [1; 3]),
+            frame(257.0, 1.0, &saturn, [2; 3]),
+            frame(257.0, 1.0, &later, [2; 3]),
+        ];
+        assert_eq!(counts, [1, 1, 2, 3, 4, 5]);
     }
 
     #[test]

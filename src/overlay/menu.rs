@@ -154,7 +154,8 @@ impl Placed {
 
     /// Draws it: a black card with a red frame, so that nothing of the sky's picture is read through the words.
     pub(super) fn draw(&self, picture: &mut Picture, ink: &mut Ink, style: &Style, region: &Region) {
-        let light = |share: f32| [style.text * share, 0.0, 0.0];
+        // No caption is brighter than a picture's white.
+        let light = |share: f32| [(style.text * share).min(style.photograph), 0.0, 0.0];
         let mut lay = |path: Option<Path>, stroke: Option<f32>, colour: [f32; 3]| {
             if let Some(path) = path {
                 match stroke {

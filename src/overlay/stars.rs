@@ -33,9 +33,18 @@ pub fn peak(v_mag: f32) -> f32 {
     (0.40 + 0.075 * (12.0 - v_mag)).clamp(0.35, 1.0)
 }
 
+/// How stars are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Starlight {
+    /// In which colours.
+    pub palette: Palette,
+    /// How bright beside [`peak`]: as much as photographs are beside their usual share.
+    pub share: f32,
+}
+
 /// Adds a star's light around a point.
-pub fn draw(picture: &mut Picture, region: &Region, x: f64, y: f64, star: &FieldStar, palette: Palette) {
-    point(picture, region, x, y, star.v_mag, star.colour_bv, palette);
+pub fn draw(picture: &mut Picture, region: &Region, x: f64, y: f64, star: &FieldStar, ink: Starlight) {
+    point(picture, region, x, y, star.v_mag, star.colour_bv, ink);
 }
 
 /// Adds the light of a point of a magnitude and colour.
@@ -46,11 +55,12 @@ pub fn point(
     y: f64,
     v_mag: f32,
     colour_bv: Option<f32>,
-    palette: Palette,
+    ink: Starlight,
 ) {
     let sigma = sigma_px(v_mag);
     let reach = f64::from(sigma * 3.0).ceil();
-    let light = colour::in_palette(palette, colour::of_star(colour_bv)).map(|channel| channel * peak(v_mag));
+    let light =
+        colour::in_palette(ink.palette, colour::of_star(colour_bv)).map(|channel| channel * peak(v_mag) * ink.share);
     let (top, bottom) = ((y - reach).max(0.0) as usize, ((y + reach).max(0.0) as usize).min(picture.height()));
     for j in top..bottom {
         let span = region.span(j);
@@ -86,7 +96,7 @@ mod tests {
     fn a_star_is_drawn_with_its_middle_where_it_stands() {
         let region = Region::new(40, 40, vec![]);
         let mut picture = Picture::black(40, 40);
-        draw(&mut picture, &region, 20.3, 17.8, &star(8.0), Palette::Natural);
+        draw(&mut picture, &region, 20.3, 17.8, &star(8.0), Starlight { palette: Palette::Natural, share: 1.0 });
         let (mut sum, mut x, mut y) = (0.0, 0.0, 0.0);
         for (index, pixel) in picture.pixels().iter().enumerate() {
             sum += pixel[0];
@@ -102,7 +112,14 @@ mod tests {
         assert!(peak(5.0) > peak(9.0) && peak(9.0) > peak(12.0));
         let mut picture = Picture::black(40, 40);
         for (x, y) in [(-3.0, -3.0), (39.9, 39.9), (-500.0, 20.0), (20.0, 1e6)] {
-            draw(&mut picture, &Region::new(40, 40, vec![]), x, y, &star(0.0), Palette::Red);
+            draw(
+                &mut picture,
+                &Region::new(40, 40, vec![]),
+                x,
+                y,
+                &star(0.0),
+                Starlight { palette: Palette::Red, share: 1.0 },
+            );
         }
         assert!(picture.pixels().iter().all(|pixel| pixel[1] == 0.0 && pixel[2] == 0.0));
     }

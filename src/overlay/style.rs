@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::facts::Choices;
+use super::tone::{Display, Toning};
 use crate::units::SurfaceBrightness;
 
 /// Where the picture stands.
@@ -68,8 +69,7 @@ pub enum Palette {
 }
 
 /// How the overlay looks. Light is in parts of the projector's full drive, linear.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Style {
     /// Where the picture stands.
     pub mode: Mode,
@@ -79,7 +79,7 @@ pub struct Style {
     pub gain: f32,
     /// No pixel is ever brighter than this.
     pub ceiling: f32,
-    /// Light of text and of the target's marks.
+    /// Light of text and of the target's marks; never more than the photographs'.
     pub text: f32,
     /// Light of other objects' outlines and labels.
     pub marks: f32,
@@ -98,6 +98,10 @@ pub struct Style {
     pub field_circle: bool,
     /// Whether the uncertainty of the position is drawn.
     pub uncertainty: bool,
+    /// Which operator tones it, and how bright it is relative to the object's own light.
+    pub tone: Toning,
+    /// What the projector gives at the eye, with gain or lamps already dimmed.
+    pub display: Display,
 }
 
 impl Default for Style {
@@ -116,6 +120,8 @@ impl Default for Style {
             facts: Choices::default(),
             field_circle: true,
             uncertainty: true,
+            tone: Toning::default(),
+            display: Display::default(),
         }
     }
 }

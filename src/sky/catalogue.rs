@@ -11,12 +11,16 @@ use crate::units::{Angle, Magnitude};
 pub mod constellation;
 /// OpenNGC as the program holds it.
 mod deep_sky;
+/// How far objects are.
+pub mod distance;
 /// What sort of thing an object is.
 pub mod kind;
 /// What the catalogue says of an object.
 pub mod object;
 /// How the files are made.
 pub mod pack;
+/// The hand controller's own places.
+pub mod places;
 /// Finding what a person means.
 mod search;
 /// The stars' names.
@@ -29,10 +33,12 @@ mod tiles;
 #[cfg(test)]
 mod tests;
 
+pub use distance::Distance;
 pub use kind::Kind;
 pub use object::{Band, FieldObject, FieldStar, Found, Object, StarId};
 
 use deep_sky::DeepSkyCatalogue;
+use places::Placed;
 use search::{Index, Target};
 use star_names::StarNames;
 use stars::{Form, StarFile};
@@ -46,6 +52,9 @@ static FAINT_STARS: &[u8] = include_bytes!("catalogue/data/faint_stars.bin");
 static STAR_NAMES: &str = include_str!("catalogue/data/star_names.tsv");
 /// Made by `scotopic catalogue pack`; CC-BY-SA-4.0, unlike the program.
 static OPENNGC: &str = include_str!("catalogue/data/openngc.tsv");
+
+/// The program's own, opened at its first use.
+static EMBEDDED: OnceLock<Catalogue> = OnceLock::new();
 
 /// All catalogues, ready to be asked.
 #[derive(Debug)]
@@ -72,7 +81,10 @@ pub enum SearchError {
         near: Vec<String>,
     },
     /// A body of the solar system.
-    #[error("'{text}' moves among the stars, and this catalogue has only what stands still: give --ra and --dec")]
+    #[error(
+        "'{text}' moves among the stars, and this program knows the way only of Sun, Moon, Mercury to Neptune and the moons of Mars, \
+         Jupiter, Saturn and Uranus: take its place from an almanac and give --ra and --dec"
+    )]
     Moving {
         /// What was asked for.
         text: String,
@@ -95,22 +107,44 @@ impl Catalogue {
     /// The catalogues built into the program.
     #[must_use]
     pub fn embedded() -> &'static Catalogue {
-        static EMBEDDED: OnceLock<Catalogue> = OnceLock::new();
         EMBEDDED.get_or_init(Catalogue::open)
+    }
+
+    /// The same with the hand controller's own places of some objects. To be called before anybody asks for
+    /// [`Catalogue::embedded`], which is this one from then on; `None`, and the places are not taken, if somebody has.
+    #[must_use]
+    pub fn embed_with(places: &[Placed]) -> Option<&'static Catalogue> {
+        EMBEDDED.set(Catalogue::open_with(places)).ok().map(|()| Catalogue::embedded())
     }
 
     /// Opens the catalogues anew; the program needs only [`Catalogue::embedded`], which does it once.
     #[must_use]
     pub fn open() -> Catalogue {
+        Catalogue::open_with(&[])
+    }
+
+    /// Opens them with the hand controller's own places of some objects; names that the catalogue does not have are left out, and
+    /// of stars the catalogue's own places stay ([`Catalogue::not_placed`] names both).
+    #[must_use]
+    pub fn open_with(places: &[Placed]) -> Catalogue {
         let tiles = Tiles::new();
         Catalogue {
             hipparcos: StarFile::open(HIPPARCOS, Form::Hipparcos, &tiles),
             faint: StarFile::open(FAINT_STARS, Form::Faint, &tiles),
             star_names: StarNames::read_all(STAR_NAMES),
-            deep_sky: DeepSkyCatalogue::read(OPENNGC, &tiles),
+            deep_sky: DeepSkyCatalogue::read(OPENNGC, places, &tiles),
             index: OnceLock::new(),
             tiles,
         }
+    }
+
+    /// Names of a list whose places are not taken: nothing in the catalogue is called so, or it is a star.
+    #[must_use]
+    pub fn not_placed<'a>(&self, places: &'a [Placed]) -> Vec<&'a str> {
+        let taken = |placed: &&Placed| {
+            self.deep_sky.place(&placed.name).is_some_and(|index| self.deep_sky.objects[index].placed)
+        };
+        places.iter().filter(|placed| !taken(placed)).map(|placed| placed.name.as_str()).collect()
     }
 
     /// How many stars of Hipparcos, fainter stars, and deep-sky objects there are.
@@ -259,6 +293,8 @@ impl Catalogue {
             axes_arcmin: None,
             position_angle: None,
             surface_brightness: None,
+            distance: Distance::of_parallax(star.astrometry.parallax_mas),
+            hand_controllers_place: false,
             constellation: constellation::at(&star.astrometry.position),
         })
     }

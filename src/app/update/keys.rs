@@ -11,6 +11,7 @@ use crate::app::menu::Page;
 use crate::app::model::{Model, Screen};
 use crate::app::search::Search;
 use crate::hw::mount::order::Order;
+use crate::overlay::tone::MOST_MAG;
 use crate::safety::Acknowledgement;
 use crate::sky::alignment;
 use crate::sky::catalogue::{Catalogue, Object};
@@ -24,6 +25,9 @@ const PUSH_PX: f64 = 8.0;
 
 /// A picture is not pushed farther than this: whoever needs more should sync.
 const FARTHEST_DEG: f64 = 5.0;
+
+/// A step of the picture's or the words' own brightness, magnitudes.
+const STEP_MAG: f64 = 0.5;
 
 /// So many pairs of stars are proposed.
 const PAIRS: usize = 3;
@@ -90,6 +94,45 @@ fn acknowledged(model: &mut Model, words: Acknowledgement) {
     }
 }
 
+/// A part of the overlay with a brightness of its own.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Picture,
+    Words,
+}
+
+/// Makes a part brighter or dimmer by some magnitudes, from what it has now; as far as the projector goes, and no words brighter
+/// than the picture.
+fn relative(model: &mut Model, part: Part, step: f64) {
+    let lights = model.lights();
+    let tone = &mut model.overlay.tone;
+    let (wanted, now) = match part {
+        Part::Picture => (&mut tone.picture_over_object_mag, lights.over_own_mag(lights.picture_cd_m2())),
+        Part::Words => (&mut tone.captions_over_object_mag, lights.over_own_mag(lights.captions_cd_m2())),
+    };
+    let before = *wanted;
+    // From what is seen to the nearest step beyond it.
+    let next = ((before.unwrap_or(now) + step) / STEP_MAG).round() * STEP_MAG;
+    *wanted = Some(next.clamp(-MOST_MAG, MOST_MAG));
+    let after = model.lights();
+    let (was, is) = match part {
+        Part::Picture => (lights.picture, after.picture),
+        Part::Words => (lights.text, after.text),
+    };
+    if step > 0.0 && is <= was {
+        // It is already at its limit: asking for more would only have to be taken back.
+        match part {
+            Part::Picture => model.overlay.tone.picture_over_object_mag = before,
+            Part::Words => model.overlay.tone.captions_over_object_mag = before,
+        }
+        let (why, advice) = match part {
+            Part::Picture => ("the projector gives no more at this brightness", "make the overlay brighter first"),
+            Part::Words => ("words are never brighter than the picture", "make the picture brighter first"),
+        };
+        model.say(Weight::Note, why, advice);
+    }
+}
+
 pub(super) fn done(model: &mut Model, action: Action) -> Vec<Effect> {
     match action {
         Action::Stop => return goto::stop(model),
@@ -125,6 +168,20 @@ pub(super) fn done(model: &mut Model, action: Action) -> Vec<Effect> {
         | Action::MenuClose => return handbox::in_menu(model, action),
         Action::OverlayBrighter => model.overlay.brightness = (model.overlay.brightness + 1).min(10),
         Action::OverlayDimmer => model.overlay.brightness = model.overlay.brightness.saturating_sub(1).max(1),
+        Action::PictureBrighter => relative(model, Part::Picture, STEP_MAG),
+        Action::PictureDimmer => relative(model, Part::Picture, -STEP_MAG),
+        Action::WordsBrighter => relative(model, Part::Words, STEP_MAG),
+        Action::WordsDimmer => relative(model, Part::Words, -STEP_MAG),
+        Action::LightByItself => {
+            model.overlay.tone.picture_over_object_mag = None;
+            model.overlay.tone.captions_over_object_mag = None;
+            model.note("picture and words are as bright as the overlay's brightness makes them");
+        }
+        Action::ToneMethod => {
+            model.overlay.tone.method = model.overlay.tone.method.next();
+            let lights = model.lights();
+            model.note(lights.words());
+        }
         Action::ScreenBrighter => model.view.brightness = (model.view.brightness + 1).min(10),
         Action::ScreenDimmer => model.view.brightness = model.view.brightness.saturating_sub(1).max(1),
         Action::Nudge(arrow) => return nudge(model, arrow, PUSH_PX),

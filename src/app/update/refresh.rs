@@ -94,6 +94,7 @@ fn scene(model: &Model, moment: Option<Moment>, horizon: Option<&Horizon>) -> Re
         rotation: horizon.map_or(Angle::ZERO, |horizon| horizon.parallactic_angle(&here.pointing.position)),
         mode: model.overlay.mode,
         brightness: f32::from(model.overlay.brightness) / 10.0,
+        tone: model.overlay.tone,
         target: model.target.clone(),
         photographs: model.overlay.photographs,
         facts: model.overlay.facts,

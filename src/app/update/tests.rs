@@ -73,6 +73,9 @@ fn object(name: &str, position: Equatorial<J2000>) -> Object {
         axes_arcmin: None,
         position_angle: None,
         surface_brightness: None,
+
+        distance: None,
+        hand_controllers_place: false,
         constellation: "And",
     }
 }
@@ -394,6 +397,7 @@ fn with_one_key_alone_every_line_of_the_menu_can_be_reached_and_chosen() {
         let _ = tapped(&mut model, &"? ".repeat(line));
         assert_eq!(model.menu.as_ref().map(|menu| menu.bar), Some(line));
         let next = model.next_in_field().map(str::to_owned);
+        let lights = model.lights();
         let _ = tapped(&mut model, "?~");
         let page = model.menu.as_ref().map(|menu| menu.page.clone());
         match action {
@@ -406,11 +410,42 @@ fn with_one_key_alone_every_line_of_the_menu_can_be_reached_and_chosen() {
             }
             Action::OverlayBrighter => assert_eq!(model.overlay.brightness, before.brightness + 1),
             Action::OverlayDimmer => assert_eq!(model.overlay.brightness, before.brightness - 1),
+            Action::PictureBrighter => assert!(model.lights().picture > lights.picture && page == Some(Page::Commands)),
+            Action::PictureDimmer => assert!(model.lights().picture < lights.picture),
+            Action::WordsBrighter => {
+                // They are as bright as the picture already.
+                assert_eq!(model.lights(), lights);
+                assert!(matches!(page, Some(Page::Says(text)) if text.contains("never brighter than the picture")));
+            }
+            Action::WordsDimmer => assert!(model.lights().text < lights.text),
             Action::NextObject => assert_eq!(model.target.map(|target| target.name), next),
             Action::EyepieceHelp => assert_eq!(page, Some(Page::Help)),
             _ => assert_eq!(page, None),
         }
     }
+}
+
+#[test]
+fn picture_and_words_go_up_and_down_by_half_magnitudes_beside_the_object_and_back_to_themselves() {
+    let mut model = tracking();
+    let plain = model.lights();
+    let over = |lights: &crate::overlay::tone::Lights| lights.over_own_mag(lights.captions_cd_m2());
+    let _ = press(&mut model, "[[[{");
+    let dimmed = model.lights();
+    assert!(dimmed.picture < 0.4 * plain.picture && dimmed.text <= dimmed.picture);
+    let asked = model.overlay.tone.picture_over_object_mag.unwrap();
+    assert!((asked * 2.0).fract() == 0.0, "{asked} is no half magnitude");
+    let effects = press(&mut model, "}");
+    assert!(over(&model.lights()) >= over(&dimmed));
+    assert!(drawn(&effects).is_none_or(|scene| scene.tone == model.overlay.tone));
+    let effects = press(&mut model, "]");
+    assert_eq!(drawn(&effects).map(|scene| scene.tone), Some(model.overlay.tone), "the picture is drawn anew");
+    let _ = press(&mut model, &"]".repeat(40));
+    assert!(model.lights().picture <= 1.0 && model.overlay.tone.picture_over_object_mag.unwrap() < 15.0);
+    let _ = press(&mut model, "nttt");
+    assert_eq!(model.lights().method, crate::eye::tone::Method::Linear);
+    let _ = press(&mut model, "t");
+    assert_eq!(model.lights(), plain);
 }
 
 #[test]

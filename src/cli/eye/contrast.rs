@@ -8,7 +8,7 @@ use crate::cli::overlay::within;
 use crate::cli::settings::Settings;
 use crate::cli::{Failure, answer, answer_json, note};
 use crate::eye::crumey::{ONE_EYE, TYPICAL_OBSERVER};
-use crate::eye::{Model, Patch, Reading, Viewing};
+use crate::eye::{Model, Patch, Reading, Viewing, glare};
 use crate::sky::catalogue::Catalogue;
 use crate::units::SurfaceBrightness;
 
@@ -45,6 +45,15 @@ pub struct Arguments {
     /// All that makes this observer need more contrast than Blackwell's, one eye included (crumey only) [default: 2 sqrt 2]
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
     pub field_factor: Option<f64>,
+    /// A bright star near by: its V magnitude. Its glare in the eye lifts background and threshold (CIE 146)
+    #[arg(long, value_name = "MAG", requires = "star_arcmin", allow_hyphen_values = true)]
+    pub star_mag: Option<f64>,
+    /// How far from the object that star is on the sky
+    #[arg(long, value_name = "ARCMIN", requires = "star_mag", allow_hyphen_values = true)]
+    pub star_arcmin: Option<f64>,
+    /// The observer's age in years, for the glare
+    #[arg(long, value_name = "YEARS", default_value_t = 35.0, allow_hyphen_values = true)]
+    pub age: f64,
     /// Answer in JSON
     #[arg(long)]
     pub json: bool,
@@ -65,6 +74,19 @@ struct Answer<'a> {
     background_at_eye_mag_arcsec2: f64,
     magnification: f64,
     exit_pupil_mm: f64,
+    glare: Option<Glare>,
+}
+
+/// What a bright star near by does.
+#[derive(Debug, Serialize)]
+struct Glare {
+    veil_cd_m2: f64,
+    sky_at_eye_cd_m2: f64,
+    /// The reserve with the veil over object and background.
+    reserve: f64,
+    verdict: &'static str,
+    /// Whether the angle at the eye was beyond the equation's.
+    clamped: bool,
 }
 
 /// Runs the subcommand.
@@ -97,8 +119,38 @@ pub fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Failure> {
         background_at_eye_mag_arcsec2: reading.background.0,
         magnification: viewing.magnification,
         exit_pupil_mm: viewing.exit_pupil_mm(),
+        glare: glare(arguments, &object, &viewing, sky)?,
     };
     if arguments.json { answer_json(&answered) } else { answer(&page(&answered, &reading, &object, &viewing, sky)) }
+}
+
+/// The veil of the star near by and what is left of the reserve, by Crumey's model: the other has an eye of its own.
+fn glare(
+    arguments: &Arguments,
+    object: &Patch,
+    viewing: &Viewing,
+    sky: SurfaceBrightness,
+) -> Result<Option<Glare>, Failure> {
+    let (Some(v_mag), Some(arcmin)) = (arguments.star_mag, arguments.star_arcmin) else { return Ok(None) };
+    let v_mag = within("--star-mag", v_mag, -30.0, 30.0)?;
+    let arcmin = within("--star-arcmin", arcmin, 0.0, 10_800.0)?;
+    let age_years = within("--age", arguments.age, 1.0, 120.0)?;
+    let observer = glare::Observer { age_years, ..glare::Observer::default() };
+    let veil = glare::veil(glare::lux_of_star(v_mag, viewing), arcmin / 60.0 * viewing.magnification, &observer);
+    let background = viewing.background_cd_m2(sky);
+    // The veil is light at the eye: before the instrument it would be so much sky more.
+    let veiled = SurfaceBrightness(sky.0 - 2.5 * ((background + veil.cd_m2) / background).log10());
+    let reading = Reading::of(object, viewing, veiled, Model::Crumey);
+    if veil.clamped {
+        note("the equation of the glare holds from 0.1 to 100 degrees at the eye: the nearer end is taken");
+    }
+    Ok(Some(Glare {
+        veil_cd_m2: veil.cd_m2,
+        sky_at_eye_cd_m2: background,
+        reserve: reading.reserve(),
+        verdict: reading.verdict().words(),
+        clamped: veil.clamped,
+    }))
 }
 
 /// The object of the catalogue, with what the command line says in its place.
@@ -131,6 +183,12 @@ fn page(answered: &Answer<'_>, reading: &Reading, object: &Patch, viewing: &View
     let second = if reading.model == Model::Crumey { Model::Blackwell } else { Model::Crumey };
     let other = Reading::of(object, viewing, sky, second);
     let edge = |reading: &Reading| if reading.clamped { "  (at the edge of what was measured)" } else { "" };
+    let glare = answered.glare.as_ref().map_or_else(String::new, |glare| {
+        format!(
+            "\n{:<20}{:.1e} cd/m2 over a sky of {:.1e}: reserve {:+.3}, {} (crumey)",
+            "with the glare", glare.veil_cd_m2, glare.sky_at_eye_cd_m2, glare.reserve, glare.verdict
+        )
+    });
     format!(
         "{}: {} at {:.0}x under {:.1}\n\
          {:<20}{:.2} mag per square arcsecond on average\n\
@@ -160,5 +218,5 @@ fn page(answered: &Answer<'_>, reading: &Reading, object: &Patch, viewing: &View
         other.reserve(),
         other.verdict().words(),
         edge(&other),
-    )
+    ) + &glare
 }

@@ -14,7 +14,7 @@ use crate::cli::projector::light;
 use crate::cli::settings::Settings;
 use crate::cli::settings::disk::Files;
 use crate::cli::settings::state::{self, State};
-use crate::cli::{Failure, animations, overlay};
+use crate::cli::{Failure, animations, coordinates, overlay, photographs};
 use crate::hw::mount::address::MountAddress;
 use crate::hw::mount::driver::{self, Ours};
 use crate::hw::mount::link::{self, Opener, Pump};
@@ -53,6 +53,7 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     if let Some(missing) = arguments.config.as_ref().filter(|path| !path.exists()) {
         return Err(Failure::Asked(format!("{} is not there: check the name of the settings file", missing.display())));
     }
+    let not_placed = coordinates::take(settings.coordinates.as_deref())?;
     let mount = arguments.mount.clone().or(settings.mount).unwrap_or(MountAddress::Sim);
     let simulated = mount == MountAddress::Sim;
     if arguments.fast && !simulated {
@@ -80,6 +81,7 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
     let placement = settings.placement.mirrored(instrument.projector.must_mirror());
     let projector = projector::open(&address, placement).map_err(Failure::failed)?;
     let projector = light::lit(projector, &settings.light)?;
+    let display = light::display(&settings.light)?;
     let eye = Eye { sky: SurfaceBrightness(settings.sky_brightness_mag_arcsec2), pupil_mm: settings.pupil_mm };
 
     let state_path = if simulated { None } else { state::default_path() };
@@ -96,6 +98,13 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         soften_stars: settings.soften_stars,
     })?;
     notices.append(&mut album.notes);
+    notices.extend(not_placed);
+    let mut maps = Vec::new();
+    if let Some(folder) = settings.maps.as_deref() {
+        let (read, notes) = photographs::read_maps(folder)?;
+        maps = read;
+        notices.extend(notes);
+    }
     notices.extend(notice);
     notices.extend(std::mem::take(&mut handbox.notices));
     let (east, north) = state.nudge.angles();
@@ -114,13 +123,18 @@ pub(super) fn open(arguments: &Arguments) -> Result<Opened, Failure> {
         observer: Observer {
             eye,
             facts: settings.facts.clone(),
-            full_cd_m2: settings.light.luminance_cd_m2,
+            display,
+            tone: settings.tone,
             lamps_dim: settings.light.module.is_some(),
             white: !album.is_empty() || !animations.is_empty(),
         },
     };
     let pump = Pump::new(driver::Settings::new(link::timing(&mount), ours), opener);
-    let projection = Projection::new(projector, album, eye).with_animations(animations).with_facts(settings.facts);
+    let projection = Projection::new(projector, album, eye)
+        .with_animations(animations)
+        .with_facts(settings.facts)
+        .with_display(display)
+        .with_maps(maps);
     Ok(Opened { opening, clock, ours, pump, projection, state_path, handbox, recording, notices })
 }
 

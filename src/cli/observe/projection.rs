@@ -11,6 +11,8 @@ use crate::hw::projector::output::{Output, Stamp, Told};
 use crate::hw::projector::{Dimmed, Nowhere, Projector};
 use crate::overlay::animation::Animation;
 use crate::overlay::facts::Choices;
+use crate::overlay::globe::Map;
+use crate::overlay::tone::Display;
 use crate::overlay::{Composer, Eye, Mode, Photograph, Style, compose};
 use crate::picture::Picture;
 use crate::pipeline::{self, View};
@@ -58,6 +60,7 @@ pub(super) struct Projection {
     animations: Vec<Animation>,
     eye: Eye,
     facts: Choices,
+    display: Display,
     /// Pictures that reached the projector.
     pub(super) frames: u64,
     /// From the instant that the position was predicted for to the instant that the picture was there.
@@ -86,6 +89,7 @@ impl Projection {
             animations: Vec::new(),
             eye,
             facts: Choices::default(),
+            display: Display::default(),
             frames: 0,
             ages: Ages::default(),
             samples: Ages::default(),
@@ -107,6 +111,18 @@ impl Projection {
     /// Which facts are told of an object.
     pub(super) fn with_facts(mut self, facts: Choices) -> Projection {
         self.facts = facts;
+        self
+    }
+
+    /// Maps that are wrapped on the discs of their bodies.
+    pub(super) fn with_maps(mut self, maps: Vec<Map>) -> Projection {
+        self.composer = self.composer.with_maps(maps);
+        self
+    }
+
+    /// What the projector gives at the eye.
+    pub(super) fn with_display(mut self, display: Display) -> Projection {
+        self.display = display;
         self
     }
 
@@ -137,6 +153,8 @@ impl Projection {
             gain: self.gain,
             information: scene.facts,
             facts: self.facts.clone(),
+            tone: scene.tone,
+            display: self.display.dimmed(f64::from(scene.brightness)),
             labels: scene.facts,
             ..Style::default()
         };

@@ -23,6 +23,7 @@ use crate::hw::light::lamp::{ENDING, POWER_UP};
 use crate::hw::light::{self, Calibration, Controller, Lamp, LightError, Module, Plan};
 use crate::hw::projector::lit::Lit;
 use crate::hw::projector::{self, Placement, Projector, ProjectorAddress, ProjectorError};
+use crate::overlay::tone::Display;
 use crate::picture::Picture;
 
 /// Guiding a builder through the measurement.
@@ -219,6 +220,19 @@ pub fn lit(projector: Box<dyn Projector>, light: &Light) -> Result<Box<dyn Proje
         return Ok(projector);
     }
     Ok(Box::new(Lit::new(projector, lamp(light, light.luminance_cd_m2)?, Some(guard(light)?))))
+}
+
+/// What the projector gives at the eye: as its calibration plans it with the filter in the tray, else as the settings claim.
+///
+/// # Errors
+/// The calibration is wrong, or does not reach what is asked.
+pub fn display(light: &Light) -> Result<Display, Failure> {
+    if light.calibration.is_none() {
+        return Ok(Display::assumed(light.luminance_cd_m2));
+    }
+    let (calibration, fitted) = calibration(light)?;
+    let plan = light::plan(light.luminance_cd_m2, &calibration, fitted.as_ref()).map_err(Failure::asked)?;
+    Ok(Display { full_cd_m2: plan.predicted_cd_m2, black_cd_m2: plan.black_cd_m2, measured: true })
 }
 
 /// A lamp for a luminance, dark.

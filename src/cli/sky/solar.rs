@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{ShowArguments, air, moment};
 use crate::cli::{Failure, answer, answer_json};
 use crate::sky::catalogue::constellation;
+use crate::sky::coords::{Equatorial, OfDate};
 use crate::sky::ephemeris::{Body, Ephemeris, moons};
 use crate::sky::horizon::{self, Horizon};
 use crate::sky::physical::Aspect;
@@ -67,6 +68,127 @@ struct MoonShown {
     eclipsed: bool,
     v_mag: f64,
     error_arcsec: f64,
+}
+
+/// What `sky show Io --json` answers: the moon's place, and where it stands beside its planet.
+#[derive(Debug, Serialize)]
+struct MoonAlone {
+    planet: &'static str,
+    ra_j2000_deg: f64,
+    dec_j2000_deg: f64,
+    ra_apparent_deg: f64,
+    dec_apparent_deg: f64,
+    ra_topocentric_deg: Option<f64>,
+    dec_topocentric_deg: Option<f64>,
+    alt_deg: Option<f64>,
+    az_deg: Option<f64>,
+    distance_au: f64,
+    #[serde(flatten)]
+    moon: MoonShown,
+    r#type: &'static str,
+    constellation: &'static str,
+    at: String,
+    delta_t_s: f64,
+    site: Option<SiteUsed>,
+}
+
+/// Answers for a moon of a planet. Its parallax is taken as the planet's; its distance is.
+///
+/// # Errors
+/// A date beyond the ephemeris, or a number out of its range.
+pub(super) fn show_moon(
+    planet: Body,
+    name: &'static str,
+    arguments: &ShowArguments,
+    site: Option<Site>,
+) -> Result<(), Failure> {
+    let moment = moment(arguments)?;
+    let ephemeris = Ephemeris::at(&moment).map_err(Failure::failed)?;
+    let reduction = ephemeris.reduction();
+    let place = ephemeris.place(planet);
+    let found = moons::beside(&ephemeris, &place).into_iter().find(|moon| moon.name == name);
+    let moon = found.ok_or_else(|| Failure::Failed(format!("{name} has no place at {}", moment.utc.to_rfc3339())))?;
+    let topocentric = site.map(|site| moon.beside(&place.topocentric(reduction, &site).apparent));
+    let apparent = moon.beside(&place.apparent);
+    let j2000 = reduction.j2000(&apparent);
+    let horizontal = site.zip(topocentric).map(|(site, seen)| Horizon::new(reduction, &site).airless(&seen));
+    let shown = MoonAlone {
+        planet: planet.name(),
+        ra_j2000_deg: j2000.ra().to_degrees(),
+        dec_j2000_deg: j2000.dec().to_degrees(),
+        ra_apparent_deg: apparent.ra().to_degrees(),
+        dec_apparent_deg: apparent.dec().to_degrees(),
+        ra_topocentric_deg: topocentric.map(|seen| seen.ra().to_degrees()),
+        dec_topocentric_deg: topocentric.map(|seen| seen.dec().to_degrees()),
+        alt_deg: horizontal.map(|seen| seen.altitude().to_degrees()),
+        az_deg: horizontal.map(|seen| seen.azimuth().to_degrees()),
+        distance_au: place.distance_au,
+        moon: told(&ephemeris, &moon),
+        r#type: "moon",
+        constellation: constellation::at(&j2000),
+        at: moment.utc.to_rfc3339(),
+        delta_t_s: moment.delta_t_s,
+        site: site.map(used),
+    };
+    if arguments.json {
+        return answer_json(&shown);
+    }
+    let how = match (moon.hidden, moon.eclipsed, moon.in_front) {
+        (true, ..) => ", behind it",
+        (_, true, _) => ", in its shadow",
+        (.., true) => ", nearer than it",
+        _ => ", farther than it",
+    };
+    let position = |place: &Equatorial<OfDate>| {
+        format!("{}  {}", HoursMinutesSeconds(place.ra()), DegreesMinutesSeconds(place.dec()))
+    };
+    let mut page = format!(
+        "{name:<20}moon of {} in {}\n{:<20}{} from the centre of the Earth\n",
+        planet.name(),
+        constellation::full_name(shown.constellation),
+        "of date",
+        position(&apparent)
+    );
+    if let (Some(seen), Some(horizontal)) = (topocentric, horizontal) {
+        let (altitude, azimuth) = (horizontal.altitude().to_degrees(), horizontal.azimuth().to_degrees());
+        let _ = writeln!(page, "{:<20}{} from the site", "", position(&seen));
+        let _ = writeln!(page, "{:<20}{altitude:.3}°, {azimuth:.3}° from north through east", "altitude, azimuth");
+    }
+    let _ = write!(
+        page,
+        "{:<20}{:+.2}\" east {:+.2}\" north{how}; to {:.1}\"\n{:<20}V {:.1} at mean phase\n{:<20}{} (delta T {:.2} s)",
+        format!("from {}", planet.name()),
+        shown.moon.dx_east_arcsec,
+        shown.moon.dy_north_arcsec,
+        shown.moon.error_arcsec,
+        "magnitude",
+        shown.moon.v_mag,
+        "at",
+        shown.at,
+        shown.delta_t_s
+    );
+    answer(&page)
+}
+
+fn told(ephemeris: &Ephemeris, moon: &moons::Moon) -> MoonShown {
+    MoonShown {
+        name: moon.name,
+        dx_east_arcsec: moon.east.to_arcseconds(),
+        dy_north_arcsec: moon.north.to_arcseconds(),
+        in_front: moon.in_front,
+        hidden: moon.hidden,
+        eclipsed: moon.eclipsed,
+        v_mag: moon.magnitude.0,
+        error_arcsec: moons::error(ephemeris, moon.name).to_arcseconds(),
+    }
+}
+
+fn used(site: Site) -> SiteUsed {
+    SiteUsed {
+        latitude_deg: site.latitude.to_degrees(),
+        longitude_deg: site.longitude.to_degrees(),
+        elevation_m: site.elevation_m,
+    }
 }
 
 /// The site that the answer is for.
@@ -130,29 +252,13 @@ pub(super) fn show(body: Body, arguments: &ShowArguments, site: Option<Site>) ->
         libration_topocentric_lon_deg: from_site.map(|(lon, _)| lon.to_degrees()),
         libration_topocentric_lat_deg: from_site.map(|(_, lat)| lat.to_degrees()),
         colongitude_deg: aspect.colongitude().map(Angle::to_degrees),
-        moons: moons::beside(&ephemeris, &place)
-            .into_iter()
-            .map(|moon| MoonShown {
-                name: moon.name,
-                dx_east_arcsec: moon.east.to_arcseconds(),
-                dy_north_arcsec: moon.north.to_arcseconds(),
-                in_front: moon.in_front,
-                hidden: moon.hidden,
-                eclipsed: moon.eclipsed,
-                v_mag: moon.magnitude.0,
-                error_arcsec: moons::error(&ephemeris, moon.name).to_arcseconds(),
-            })
-            .collect(),
+        moons: moons::beside(&ephemeris, &place).iter().map(|moon| told(&ephemeris, moon)).collect(),
         r#type: body.type_words(),
         constellation: constellation::at(&j2000),
         names: [body.name()],
         at: moment.utc.to_rfc3339(),
         delta_t_s: moment.delta_t_s,
-        site: site.map(|site| SiteUsed {
-            latitude_deg: site.latitude.to_degrees(),
-            longitude_deg: site.longitude.to_degrees(),
-            elevation_m: site.elevation_m,
-        }),
+        site: site.map(used),
         error_arcsec: ephemeris.error().to_arcseconds(),
     };
     if arguments.json {

@@ -1,7 +1,11 @@
 //! OpenNGC as the program holds it: the text file's rows with their numbers read, and a rough index by place.
 
+use std::collections::HashMap;
+
+use super::distance::Distance;
 use super::kind::Kind;
 use super::object::{Band, FieldObject, Object};
+use super::places::Placed;
 use super::tiles::Tiles;
 use crate::sky::astrometry::Astrometry;
 use crate::sky::coords::{Equatorial, J2000};
@@ -21,6 +25,8 @@ pub(super) struct DeepSky {
     pub(super) b: Option<f64>,
     pub(super) v: Option<f64>,
     pub(super) hubble: Option<&'static str>,
+    /// Whether the position is the hand controller's.
+    pub(super) placed: bool,
 }
 
 impl DeepSky {
@@ -45,6 +51,7 @@ impl DeepSky {
             b,
             v,
             hubble,
+            placed: false,
         })
     }
 
@@ -87,6 +94,8 @@ impl DeepSky {
             axes_arcmin: self.axes_arcmin,
             position_angle: self.position_angle,
             surface_brightness,
+            distance: Distance::listed(self.names.split(';')),
+            hand_controllers_place: self.placed,
             constellation: self.constellation,
         }
     }
@@ -107,6 +116,24 @@ impl DeepSky {
     }
 }
 
+/// Lays the hand controller's places over the catalogue's.
+fn lay_over(objects: &mut [DeepSky], places: &[Placed]) {
+    if places.is_empty() {
+        return;
+    }
+    let wanted: HashMap<String, &Placed> = places.iter().map(|placed| (plain(&placed.name), placed)).collect();
+    for object in objects {
+        if let Some(placed) = object.names.split(';').find_map(|own| wanted.get(&plain(own))) {
+            (object.position, object.placed) = (placed.position, true);
+        }
+    }
+}
+
+/// A name without spaces, in small letters.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
+}
+
 /// All objects, in the order of the file, and their places by tile.
 #[derive(Debug)]
 pub(super) struct DeepSkyCatalogue {
@@ -121,15 +148,22 @@ pub(super) struct DeepSkyCatalogue {
 pub(super) const LARGE: Angle = Angle::degrees(0.25);
 
 impl DeepSkyCatalogue {
-    pub(super) fn read(text: &'static str, tiles: &Tiles) -> DeepSkyCatalogue {
+    pub(super) fn read(text: &'static str, places: &[Placed], tiles: &Tiles) -> DeepSkyCatalogue {
         let rows = text.lines().filter(|line| !line.starts_with('#'));
-        let objects: Vec<DeepSky> = rows.filter_map(DeepSky::read).collect();
+        let mut objects: Vec<DeepSky> = rows.filter_map(DeepSky::read).collect();
+        lay_over(&mut objects, places);
         let tile = |object: &DeepSky| tiles.of(object.position.ra().to_degrees(), object.position.dec().to_degrees());
         let mut by_tile: Vec<(usize, usize)> =
             objects.iter().enumerate().map(|(index, object)| (tile(object), index)).collect();
         by_tile.sort_unstable();
         let large = (0..objects.len()).filter(|index| objects[*index].reach() > LARGE).collect();
         DeepSkyCatalogue { objects, by_tile, large }
+    }
+
+    /// The object of that name, whatever its spaces and case.
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
+        let wanted = plain(name);
+        self.objects.iter().position(|object| object.names.split(';').any(|own| plain(own) == wanted))
     }
 
     /// Objects whose centre is in a run of tiles.

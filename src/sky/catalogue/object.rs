@@ -1,5 +1,6 @@
 //! What the catalogue says of one object, and the smaller forms in which a field's contents come.
 
+use super::distance::Distance;
 use super::kind::Kind;
 use crate::eye::Patch;
 use crate::sky::astrometry::Astrometry;
@@ -41,6 +42,10 @@ pub struct Object {
     pub position_angle: Option<Angle>,
     /// Mean surface brightness in V out to the catalogued axes: the core is far brighter.
     pub surface_brightness: Option<SurfaceBrightness>,
+    /// How far it is, where that is known.
+    pub distance: Option<Distance>,
+    /// Whether its place is the hand controller's own, from the observer's list.
+    pub hand_controllers_place: bool,
     /// The constellation's IAU abbreviation: `And`.
     pub constellation: &'static str,
 }
@@ -50,6 +55,32 @@ impl Object {
     #[must_use]
     pub fn v_magnitude(&self) -> Option<Magnitude> {
         self.magnitude.filter(|_| self.band == Band::V)
+    }
+
+    /// V magnitude where only B is known: B less the mean colour of what it is.
+    ///
+    /// ```text
+    /// B - V   elliptical, lenticular 0.90   Sa 0.78   Sb 0.65   Sc 0.52   later and irregular 0.42   galaxy of unknown type 0.7
+    ///         globular cluster 0.75
+    /// ```
+    ///
+    /// Medians by type after Roberts and Haynes (1994), ARA&A 32, 115, table 1, rounded (from memory); single galaxies differ by
+    /// 0.15. Of other kinds no V is guessed.
+    #[must_use]
+    pub fn estimated_v_magnitude(&self) -> Option<Magnitude> {
+        let blue = self.magnitude.filter(|_| self.band == Band::B)?;
+        let colour = match self.kind {
+            Kind::Galaxy => self.hubble.map_or(0.7, colour_of_galaxy),
+            Kind::GlobularCluster => 0.75,
+            _ => return None,
+        };
+        Some(Magnitude(blue.0 - colour))
+    }
+
+    /// Magnitude at 10 parsecs, where V and the distance are known; what dust takes on the way is not made good.
+    #[must_use]
+    pub fn absolute_magnitude(&self) -> Option<f64> {
+        Some(self.v_magnitude()?.0 - self.distance?.modulus())
     }
 
     /// The object as the models of the eye take it, where its V magnitude and its size are known.
@@ -88,6 +119,24 @@ impl Object {
             (Kind::SolarSystem, _) => Body::from_name(&self.name).map_or(self.kind.words(), Body::type_words),
             (kind, _) => kind.words(),
         }
+    }
+}
+
+/// Mean B-V of a galaxy of Hubble's type; see [`Object::estimated_v_magnitude`].
+fn colour_of_galaxy(hubble: &str) -> f64 {
+    let plain: String = hubble.chars().filter(|c| c.is_ascii_alphanumeric() && *c != 'R').collect();
+    let spiral =
+        plain.strip_prefix("SAB").or(plain.strip_prefix("SB")).or(plain.strip_prefix("SA")).or(plain.strip_prefix('S'));
+    // SA and SB are families before a stage, and stages by themselves: Sa, Sb are written small.
+    match spiral.and_then(|stage| stage.chars().next()) {
+        _ if plain.starts_with('E') => 0.90,
+        _ if plain.starts_with('I') => 0.42,
+        Some('0') => 0.90,
+        Some('a') => 0.78,
+        Some('b') => 0.65,
+        Some('c') => 0.52,
+        Some('d' | 'm') => 0.42,
+        _ => 0.7,
     }
 }
 

@@ -37,8 +37,10 @@ pub(super) struct Index {
 }
 
 /// Names that are of the solar system: they move, and no catalogue of fixed places has them.
-const MOVING: [&str; 11] =
-    ["sun", "moon", "mercury", "venus", "mars", "jupiter", "saturn", "uranus", "neptune", "pluto", "ceres"];
+const MOVING: [&str; 19] = [
+    "sun", "moon", "mercury", "venus", "mars", "jupiter", "saturn", "uranus", "neptune", "pluto", "ceres", "vesta",
+    "pallas", "juno", "triton", "charon", "nereid", "amalthea", "phoebe",
+];
 
 /// Whether a name is of the solar system.
 pub(super) fn moves(text: &str) -> bool {

@@ -7,7 +7,7 @@ use super::moons::{self, Moon};
 use super::place::{Ephemeris, site_au};
 use crate::sky::astrometry::Astrometry;
 use crate::sky::catalogue::{Band, Kind, Object, constellation};
-use crate::sky::coords::{Equatorial, J2000, OfDate};
+use crate::sky::coords::{Equatorial, J2000};
 use crate::sky::physical::Aspect;
 use crate::sky::project::tangent_basis;
 use crate::sky::site::Site;
@@ -122,7 +122,7 @@ impl InView {
         let basis = tangent_basis(&position);
         let to_view = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)) * basis;
         let to_sun = if body == Body::Sun { -to_body } else { -place.from_sun_au };
-        let moon = |moon: Moon| (moon, reduction.j2000(&offset(&apparent, &moon)));
+        let moon = |moon: Moon| (moon, reduction.j2000(&moon.beside(&apparent)));
         InView {
             body,
             position,
@@ -156,6 +156,8 @@ impl InView {
             // The equator lies across the axis.
             position_angle: Some((Angle::atan2(pole.x, pole.y) + Angle::degrees(90.0)).wrapped()),
             surface_brightness: None,
+            distance: None,
+            hand_controllers_place: false,
             constellation: constellation::at(&self.position),
         }
     }
@@ -167,10 +169,4 @@ impl InView {
         let moons = self.moons.iter().map(|(moon, _)| moon.east.to_radians().hypot(moon.north.to_radians()));
         Angle::radians(moons.fold(self.globe.radius.to_radians() * rings, f64::max))
     }
-}
-
-/// A place beside another on the tangent plane of date.
-fn offset(planet: &Equatorial<OfDate>, moon: &Moon) -> Equatorial<OfDate> {
-    let basis = tangent_basis(&Equatorial::new(planet.ra(), planet.dec()));
-    Equatorial::from_direction(basis.transpose() * DVec3::new(moon.east.to_radians(), moon.north.to_radians(), 1.0))
 }

@@ -14,7 +14,9 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::body::Body;
 use super::place::{AU_KM, Ephemeris, Place};
+use crate::sky::coords::{Equatorial, OfDate};
 use crate::sky::physical::Rotation;
+use crate::sky::project::tangent_basis;
 use crate::units::{Angle, Magnitude};
 
 /// A moon beside its planet, seen from the centre of the Earth.
@@ -34,6 +36,16 @@ pub struct Moon {
     pub eclipsed: bool,
     /// Apparent magnitude when lit, at mean phase.
     pub magnitude: Magnitude,
+}
+
+impl Moon {
+    /// Where the moon is when its planet is there: on the tangent plane of date.
+    #[must_use]
+    pub fn beside(&self, planet: &Equatorial<OfDate>) -> Equatorial<OfDate> {
+        let basis = tangent_basis(&Equatorial::new(planet.ra(), planet.dec()));
+        let towards = DVec3::new(self.east.to_radians(), self.north.to_radians(), 1.0);
+        Equatorial::from_direction(basis.transpose() * towards)
+    }
 }
 
 /// Names and magnitudes at one astronomical unit from Sun and Earth (*Explanatory Supplement to the Astronomical Almanac*, 3rd
@@ -68,6 +80,19 @@ pub fn beside(ephemeris: &Ephemeris, place: &Place) -> Vec<Moon> {
         Body::Uranus => moons(&URANUS, &uranus::centres(place.left_jde)),
         _ => Vec::new(),
     }
+}
+
+/// The planet and the name of a moon that is called so, whatever its case.
+#[must_use]
+pub fn named(text: &str) -> Option<(Body, &'static str)> {
+    let all = [
+        (Body::Mars, &MARS[..]),
+        (Body::Jupiter, &JUPITER[..]),
+        (Body::Saturn, &SATURN[..]),
+        (Body::Uranus, &URANUS[..]),
+    ];
+    let mut moons = all.into_iter().flat_map(|(body, moons)| moons.iter().map(move |(name, _)| (body, *name)));
+    moons.find(|(_, name)| name.eq_ignore_ascii_case(text.trim()))
 }
 
 /// The error to expect of a moon's offset: measured from 1990 to 2050 against other theories (1.5 arcseconds; Titan 2, Iapetus

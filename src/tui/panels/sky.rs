@@ -18,7 +18,7 @@ pub(super) fn draw(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Re
     let texts = if area.width >= 120 { area.width * 2 / 5 } else { TEXTS.min(area.width / 2) };
     let [left, right] = Layout::horizontal([Constraint::Length(texts), Constraint::Min(0)]).areas(area);
     draw_texts(model, theme, frame, left);
-    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(5)]).areas(right);
+    let [picture, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(6)]).areas(right);
     draw_picture(model, theme, frame, picture);
     draw_below(model, theme, frame, below);
 }
@@ -104,6 +104,7 @@ fn draw_below(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     let mut lines = vec![
         Line::styled(eyepiece, theme.text(Level::Normal)),
         Line::styled(overlay, theme.text(Level::Dim)),
+        Line::styled(format!(" {}", model.lights().words()), theme.text(Level::Dim)),
         Line::styled(place, theme.text(Level::Dim)),
     ];
     lines.extend(model.eye.words(background).map(|words| Line::styled(format!(" {words}"), theme.text(Level::Dim))));
