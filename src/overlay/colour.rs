@@ -56,9 +56,26 @@ pub fn in_palette(palette: Palette, light: [f32; 3]) -> [f32; 3] {
     }
 }
 
+/// Light made brighter by `gain` without losing what is bright: slope `gain` in the dark, and full light stays full light.
+///
+/// ```text
+/// g v / (1 + (g - 1) v)        g > 1;        g v        g <= 1
+/// ```
+#[must_use]
+pub fn lifted(light: f32, gain: f32) -> f32 {
+    let light = light.clamp(0.0, 1.0);
+    gain * light / (1.0 + (gain - 1.0).max(0.0) * light)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lifting_brightens_the_dark_and_keeps_the_bright_apart() {
+        assert!((lifted(0.001, 5.0) - 0.005).abs() < 1e-4 && (lifted(1.0, 5.0) - 1.0).abs() < 1e-6);
+        assert!(lifted(0.9, 5.0) > lifted(0.8, 5.0) + 0.02 && (lifted(0.5, 0.5) - 0.25).abs() < 1e-6);
+    }
 
     #[test]
     fn daylight_is_nearly_white_and_hot_stars_are_bluer_than_cool_ones() {

@@ -471,7 +471,7 @@ fn photographs_light<'a>(
 ) -> impl Fn([f32; 3]) -> [f32; 3] + use<'a> {
     let (palette, share) = (style.palette, style.photograph);
     move |light| {
-        let light = colour::in_palette(palette, light).map(|channel| (channel * gain).min(1.0));
+        let light = colour::in_palette(palette, light).map(|channel| colour::lifted(channel, gain));
         curve.as_ref().map_or(light, |curve| curve.of(light)).map(|channel| channel.min(1.0) * share)
     }
 }
