@@ -15,6 +15,8 @@ use crate::physics::dust::voxelwise::Voxelwise;
 
 /// Clouds that no photon likes.
 pub mod extremes;
+/// Frames of the renderer to fly with.
+pub mod flying;
 /// What the table makes of one cloud on coarse and fine grids.
 pub mod grid;
 /// The references.
@@ -33,7 +35,8 @@ pub struct Picture {
     pub method: &'static str,
     /// Its setting.
     pub setting: String,
-    /// What was made before the picture: photons followed; for the table nothing, as it is kept from one picture to the next.
+    /// What was made before the picture: photons followed, and for flying what no frame changes; for the table nothing, as it is kept from one
+    /// picture to the next.
     pub ready_s: f64,
     /// The picture itself.
     pub picture_s: f64,
@@ -135,6 +138,8 @@ pub fn pictures(
                 believed,
             });
         }
+        told(&format!("{}: flying", cloud.name));
+        all.extend(flying::pictures(cloud, clock)?);
     }
     Ok(all)
 }
