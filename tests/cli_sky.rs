@@ -33,6 +33,7 @@ fn show_answers_with_every_key_and_erfas_numbers() {
         "distance_pc",
         "absolute_v_mag",
         "hand_controllers_place",
+        "field_rotation_deg_per_h",
     ];
     wanted.sort_unstable();
     assert_eq!(keys, wanted);

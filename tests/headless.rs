@@ -187,7 +187,7 @@ fn card(picture: &RgbImage) -> Option<(u32, u32, u32)> {
 fn inside(picture: &RgbImage) -> Vec<u8> {
     let Some((edge, top, bottom)) = card(picture) else { return Vec::new() };
     // Its left edge is found, or its right one.
-    let (from, to) = if edge < 900 { (edge + 5, (edge + 150).min(1010)) } else { (edge - 150, edge - 5) };
+    let (from, to) = if edge < 900 { (edge + 5, (edge + 205).min(1010)) } else { (edge - 205, edge - 5) };
     (top..bottom).flat_map(|y| (from..to).flat_map(move |x| picture.get_pixel(x, y).0)).collect()
 }
 

@@ -19,6 +19,8 @@ use crate::units::angle::{DegreesMinutesSeconds, HoursMinutesSeconds};
 pub enum Fact {
     /// What it is, and its class.
     Type,
+    /// What else it is called.
+    Names,
     /// In which constellation.
     Constellation,
     /// How large it is.
@@ -41,14 +43,13 @@ pub enum Fact {
     Distance,
     /// On which charts of Uranometria 2000.0 and the Millennium Star Atlas it is.
     Charts,
-    /// What else it is called.
-    Names,
 }
 
 impl Fact {
     /// All of them in the order in which they are told.
     pub const ALL: [Fact; 13] = [
         Fact::Type,
+        Fact::Names,
         Fact::Constellation,
         Fact::Size,
         Fact::Position,
@@ -60,7 +61,6 @@ impl Fact {
         Fact::Power,
         Fact::Distance,
         Fact::Charts,
-        Fact::Names,
     ];
 
     /// What stands before it in a list.

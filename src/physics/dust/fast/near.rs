@@ -66,7 +66,8 @@ impl Surroundings<'_> {
             column += 0.5 * (density + before.1) * (t - before.0) as f32;
             before = (t, density);
             let distance = (passing / phi.cos()).min(reach);
-            let share = 1.0 - share_of_grid(distance as f32 / REACH);
+            // Rounding may leave a hair less than nothing.
+            let share = (1.0 - share_of_grid(distance as f32 / REACH)).max(0.0);
             // Light comes from the star and goes against the ray.
             let cosine = -(place - lamp.position).normalize_or_zero().dot(ray.direction);
             let amount = f64::from(share) * self.phase.per_steradian(cosine) * step / passing;
