@@ -193,3 +193,86 @@ impl Photograph {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat2, DVec2};
+
+    use super::*;
+    use crate::sky::catalogue::Catalogue;
+    use crate::units::Angle;
+
+    /// A sky of 0.1 with a little unevenness, and what is added to it.
+    fn sky(side: usize, more: impl Fn(f32, f32) -> f32) -> Picture {
+        let mut picture = Picture::black(side, side);
+        for y in 0..side {
+            for (x, pixel) in picture.row_mut(y).iter_mut().enumerate() {
+                let uneven = 0.002 * (((x * 7919 + y * 104_729) % 101) as f32 / 50.0 - 1.0);
+                *pixel = [0.1 + uneven + more(x as f32, y as f32); 3];
+            }
+        }
+        picture
+    }
+
+    fn spot(x: f32, y: f32, at: (f32, f32), light: f32, width: f32) -> f32 {
+        light * (-((x - at.0).powi(2) + (y - at.1).powi(2)) / (2.0 * width * width)).exp()
+    }
+
+    #[test]
+    fn the_sky_goes_and_the_object_stays_and_what_is_no_number_is_black() {
+        let object = |x: f32, y: f32| if (x - 128.0).hypot(y - 128.0) < 80.0 { 0.3 } else { 0.0 };
+        let mut picture = sky(256, |x, y| object(x, y) + spot(x, y, (30.0, 40.0), 1.0, 2.0));
+        picture.row_mut(5)[5] = [f32::NAN; 3];
+        without_background(&mut picture);
+        assert_eq!(picture.row(5)[5], [0.0; 3]);
+        assert!((picture.row(128)[128][0] - 0.3).abs() < 0.006, "{:?}", picture.row(128)[128]);
+        assert!(picture.row(230)[20][0] < 0.006, "{:?}", picture.row(230)[20]);
+    }
+
+    #[test]
+    fn stars_soften_by_the_share_asked_for_and_a_nebula_does_not() {
+        let nebula = |x: f32, y: f32| spot(x, y, (150.0, 150.0), 0.4, 60.0);
+        let whole = sky(300, |x, y| nebula(x, y) + spot(x, y, (80.0, 80.0), 0.5, 0.8));
+        for share in [0.0, 0.5, 1.0] {
+            let mut picture = whole.clone();
+            soften_stars(&mut picture, share);
+            let star = picture.row(80)[80][0] - 0.1 - nebula(80.0, 80.0);
+            assert!((star - 0.5 * (1.0 - share)).abs() < 0.02, "{share}: {star}");
+            assert!((picture.row(150)[150][0] - whole.row(150)[150][0]).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn a_picture_of_one_pixel_is_no_trouble() {
+        let mut picture = Picture::black(1, 1);
+        picture.row_mut(0)[0] = [0.5; 3];
+        soften_stars(&mut picture, 1.0);
+        without_background(&mut picture);
+        assert!(picture.row(0)[0].iter().all(|light| light.is_finite()));
+    }
+
+    #[test]
+    fn full_light_is_as_many_magnitudes_brighter_as_the_ellipse_is_darker_than_white() {
+        // M57: V 8.8 over 1.4 x 1.0 arcminutes; here it has a tenth of full light, evenly.
+        let object = Catalogue::embedded().search("M57").unwrap();
+        let scale = Angle::arcseconds(1.0).to_radians();
+        let plate = Plate {
+            centre: object.astrometry.position,
+            reference: DVec2::splat(150.0),
+            matrix: DMat2::from_diagonal(DVec2::new(-scale, scale)),
+        };
+        let mut picture = Picture::black(300, 300);
+        picture.pixels_mut().fill([0.1; 3]);
+        let full = full_light(&plate, &picture, &object).unwrap();
+        let brightness = object.surface_brightness.unwrap();
+        assert!((full.0 - (brightness.0 - 2.5)).abs() < 0.01, "{} {}", full.0, brightness.0);
+        // Drawn, full light is 2 magnitudes brighter than the object: 0.5 magnitudes below what it stood for.
+        let photograph = Photograph { full_light: Some(full), ..Photograph::new("m57".into(), None, plate, picture) };
+        let gain = photograph.gain(Some(brightness));
+        assert!((gain - 10f32.powf(0.4 * 0.5)).abs() < 0.02, "{gain}");
+        // Elsewhere there is none of it to be seen.
+        let elsewhere =
+            Plate { centre: crate::sky::coords::Equatorial::new(Angle::degrees(10.0), Angle::ZERO), ..plate };
+        assert_eq!(full_light(&elsewhere, photograph.picture().unwrap(), &object), None);
+    }
+}

@@ -178,3 +178,69 @@ impl Photograph {
         ))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat2;
+
+    use super::*;
+    use crate::overlay::photograph::Plate;
+    use crate::picture::Picture;
+
+    /// A photograph of the Pleiades with stars of V 10 and brighter where the catalogue has them, turned by some angle about its middle.
+    fn pleiades(turned: f64) -> Photograph {
+        let centre = Equatorial::new(Angle::degrees(56.75), Angle::degrees(24.12));
+        let scale = Angle::arcseconds(5.0).to_radians();
+        let matrix = DMat2::from_diagonal(DVec2::new(-scale, -scale));
+        let plate = Plate { centre, reference: DVec2::splat(300.0), matrix };
+        let mut photograph = Photograph::new("m45".into(), None, plate, Picture::black(600, 600));
+        let found = Catalogue::embedded().within(&centre, Angle::degrees(0.6), Magnitude(10.0));
+        let stars: Vec<DVec2> = found.stars.iter().filter_map(|star| plate.pixel(&place(star, 0.0))).collect();
+        assert!(stars.len() > 20, "{}", stars.len());
+        let turn = DMat2::from_angle(turned);
+        let mut picture = Picture::black(600, 600);
+        for y in 0..600 {
+            for (x, pixel) in picture.row_mut(y).iter_mut().enumerate() {
+                let here = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let light = |star: &DVec2| {
+                    let star = turn * (*star - DVec2::splat(300.0)) + DVec2::splat(300.0);
+                    0.8 * (-here.distance_squared(star) / 4.5).exp()
+                };
+                *pixel = [stars.iter().map(light).sum::<f64>() as f32; 3];
+            }
+        }
+        // A trail of a satellite is no star.
+        for step in 0..60 {
+            picture.row_mut(500)[200 + step] = [0.9; 3];
+        }
+        photograph = Photograph::new(photograph.name, None, plate, picture);
+        photograph
+    }
+
+    #[test]
+    fn stars_are_met_where_the_catalogue_has_them_and_no_trail_is_one() {
+        let photograph = pleiades(0.0);
+        let agreement = agreement(&photograph, Catalogue::embedded(), Angle::arcseconds(10.0), 2000.0).unwrap();
+        assert!(agreement.holds() && agreement.median < Angle::arcseconds(2.0), "{agreement:?}");
+        assert_eq!(photograph.doubt(None, Some(&agreement)), None);
+        assert!(spots(&photograph).iter().all(|spot| (spot.pixel.y - 500.5).abs() > 2.0));
+    }
+
+    #[test]
+    fn a_photograph_that_is_turned_or_of_elsewhere_is_doubted_in_words() {
+        let agreement = agreement(&pleiades(1.0), Catalogue::embedded(), Angle::arcseconds(10.0), 2000.0).unwrap();
+        assert!(!agreement.beyond_chance(), "{agreement:?}");
+        assert!(pleiades(1.0).doubt(None, Some(&agreement)).unwrap().contains("turned, mirrored or elsewhere"));
+        let ring = Catalogue::embedded().search("M57").unwrap();
+        assert!(pleiades(0.0).doubt(Some(&ring), None).unwrap().contains("degrees away from"));
+    }
+
+    #[test]
+    fn a_photograph_without_stars_or_of_one_pixel_has_none() {
+        let plate = pleiades(0.0).plate;
+        for side in [1, 300] {
+            let grey = Photograph::new("grey".into(), None, plate, Picture::black(side, side));
+            assert_eq!(spots(&grey), []);
+        }
+    }
+}

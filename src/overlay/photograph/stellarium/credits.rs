@@ -59,12 +59,21 @@ impl Credits {
 }
 
 fn entry(paragraph: &str) -> Option<Entry> {
-    let rest = paragraph.trim().strip_prefix("Image").map(|rest| rest.trim_start_matches('s'))?;
-    let rest = rest.trim_start().strip_prefix("of ")?;
-    let end = rest.find(" from ").or(rest.find(" No machine-readable")).unwrap_or(rest.len());
-    let objects = rest[..end].split(',').flat_map(|part| part.split(" and ")).map(designation);
+    let (named, rest) = named(paragraph.trim())?;
+    let objects = named.split(',').flat_map(|part| part.split(" and ")).map(designation);
     let licence = rest.split_once("License:").map(|(_, terms)| short(terms.trim()));
     Some(Entry { objects: objects.collect(), licence })
+}
+
+/// The objects that a paragraph names, and all of it from there on: `Images of M1, M27 from ...` or `M31 pictures come from ...`.
+fn named(paragraph: &str) -> Option<(&str, &str)> {
+    if let Some((object, _)) = paragraph.split_once(" pictures come from ") {
+        return (!object.contains(' ')).then_some((object, paragraph));
+    }
+    let rest = paragraph.strip_prefix("Image").map(|rest| rest.trim_start_matches('s'))?;
+    let rest = rest.trim_start().strip_prefix("of ")?;
+    let end = rest.find(" from ").or(rest.find(" No machine-readable")).unwrap_or(rest.len());
+    Some((&rest[..end], rest))
 }
 
 /// Terms in a few words: what has a usual name is called by it.
@@ -92,7 +101,7 @@ mod tests {
     use super::*;
 
     /// Paragraphs of Stellarium 0.22.2's CREDITS.md.
-    const SOME: &str = "4. Graphics\n\t4.10 Images of M1, M27, M57, M97, NGC6946 from Stephane\n\t     Dumont\n\t4.16 Images of NGC2903, NGC3185,\n\t     NGC3190\n\t     from Oleg Bryzgalov \n\t     http://olegbr.astroclub.kiev.ua/\n\t     License: Creative Commons Attribution 3.0 Unported\n\t4.31 Images of NGC1579, Barnard Loop, IC342, SH2-297 from Sun Shuwei\n\t     License: public domain\n\t4.39 Images of M4, M12\n\t     from Hewholooks\n\t     License: Creative Commons Attribution-Share Alike 3.0 Unported\n\n5. Other\n";
+    const SOME: &str = "4. Graphics\n\t4.8 M31 pictures come from LEE ang HG731GZ\n\t    License: Creative Commons Attribution 3.0 Unported\n\t4.10 Images of M1, M27, M57, M97, NGC6946 from Stephane\n\t     Dumont\n\t4.16 Images of NGC2903, NGC3185,\n\t     NGC3190\n\t     from Oleg Bryzgalov \n\t     http://olegbr.astroclub.kiev.ua/\n\t     License: Creative Commons Attribution 3.0 Unported\n\t4.31 Images of NGC1579, Barnard Loop, IC342, SH2-297 from Sun Shuwei\n\t     License: public domain\n\t4.39 Images of M4, M12\n\t     from Hewholooks\n\t     License: Creative Commons Attribution-Share Alike 3.0 Unported\n\n5. Other\n";
 
     #[test]
     fn a_picture_is_under_the_terms_of_its_paragraph() {
@@ -106,7 +115,8 @@ mod tests {
             ("barnard_loop-1", "public domain"),
             ("ic342", "public domain"),
             ("m57dumont", OF_THE_SET),
-            ("m31", OF_THE_SET),
+            ("m31", "CC-BY-3.0"),
+            ("m32", OF_THE_SET),
             ("m1dumont", OF_THE_SET),
         ] {
             assert_eq!(credits.licence(stem, None), licence, "{stem}");

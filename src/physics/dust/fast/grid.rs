@@ -92,7 +92,7 @@ impl Grid {
         let index = self.index(place);
         let along = |axis: usize| {
             let at = index[axis].clamp(0.5, self.size[axis] as f64 + 0.5);
-            (at as usize, (at - at.floor()) as f32)
+            (at as usize, (at - (at as usize) as f64) as f32)
         };
         let ((x, u), (y, v), (z, w)) = (along(0), along(1), along(2));
         let start = (z * self.padded[1] + y) * self.padded[0] + x;
