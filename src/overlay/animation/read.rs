@@ -68,7 +68,7 @@ pub enum AnimationError {
 /// scale_arcsec_px = 0.4
 /// angle_deg = 0.0            # position angle of the picture's top, from north through east; 0 if left out
 /// flipped = false            # true when east is right of north
-/// frames_per_second = 12.0   # 0.2 to 25
+/// frames_per_second = 12.0   # 0.2 to 30
 /// # ra_deg, dec_deg          # of the picture's middle (J2000), if that is not the object
 /// credit = "A. Animator"
 /// ```
@@ -162,9 +162,9 @@ impl Film {
         let beside: Beside = toml::from_str(beside).map_err(|error| wrong(error.to_string()))?;
         let (width, height, factor) = self.size.ok_or(AnimationError::Empty)?;
         let object = Catalogue::embedded().search(&beside.object).map_err(|error| wrong(error.to_string()))?;
-        let speed = beside.frames_per_second.or(speed.map(|speed| speed.clamp(0.2, 25.0))).unwrap_or(USUAL_SPEED);
-        if !(0.2..=25.0).contains(&speed) {
-            return Err(wrong(format!("frames_per_second is {speed}: give 0.2 to 25")));
+        let speed = beside.frames_per_second.or(speed.map(|speed| speed.clamp(0.2, 30.0))).unwrap_or(USUAL_SPEED);
+        if !(0.2..=30.0).contains(&speed) {
+            return Err(wrong(format!("frames_per_second is {speed}: give 0.2 to 30")));
         }
         for (key, value, least, most) in [
             ("ra_deg", beside.ra_deg.unwrap_or(0.0), 0.0, 360.0),
@@ -322,7 +322,7 @@ mod tests {
             ("object = \"M57\"", "scale_arcsec_px"),
             ("object = \"nothing so called\"\nscale_arcsec_px = 1.0", "nothing so called"),
             ("object = \"M57\"\nscale_arcsec_px = -1.0", "-1"),
-            ("object = \"M57\"\nscale_arcsec_px = 1.0\nframes_per_second = 1000", "0.2 to 25"),
+            ("object = \"M57\"\nscale_arcsec_px = 1.0\nframes_per_second = 1000", "0.2 to 30"),
             ("object = \"M57\"\nscale_arcsec_px = 1.0\nra_deg = 3", "only one of"),
         ] {
             let error = read(&[frame(8, 4, 0)], beside).unwrap_err().to_string();
