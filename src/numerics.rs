@@ -1,5 +1,7 @@
 //! Integrals, roots, steps of differential equations, and seeded random streams.
 
+/// Names of things that are kept.
+pub mod hash;
 /// Integrals by Gauss and Kronrod.
 pub mod quadrature;
 /// Where a function is zero.

@@ -4,6 +4,8 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
+/// What was computed before.
+pub mod cache;
 /// Linear light in a file becomes a picture.
 pub mod develop;
 /// How light becomes a picture for people.
@@ -18,6 +20,8 @@ pub mod fly;
 pub mod gallery;
 /// A nebula out of nothing.
 pub mod generate;
+/// How light is scattered and given off.
+pub mod lighting;
 /// Pictures in files.
 pub mod out;
 /// Photons through a sphere of dust.

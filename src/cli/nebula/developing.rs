@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use crate::cli::Failure;
+use crate::numerics::hash::fnv;
 use crate::overlay::photograph::read;
 use crate::physics::dust::backdrop::{StarField, photograph};
 use crate::physics::dust::camera::Camera;
@@ -14,9 +15,11 @@ use crate::picture::Picture;
 
 /// Stars of a star field over the whole sky.
 const STARS: usize = 40_000;
+/// White in the background, in shares of white.
+const BACKGROUND_LIGHT: f64 = 0.7;
 
 /// What is asked of the development.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, PartialEq, Args)]
 pub struct DevelopArguments {
     /// Radiance that is shown as full, or auto: all but the brightest 0.5 % of the pixels with light are below it
     #[arg(long, value_name = "RADIANCE|auto", default_value = "auto", allow_negative_numbers = true)]
@@ -28,7 +31,7 @@ pub struct DevelopArguments {
     #[arg(long, value_name = "FILE|stars[:SEED]")]
     background: Option<Background>,
     /// How bright white in the background is, in shares of white
-    #[arg(long, value_name = "SHARE", default_value_t = 0.7, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = BACKGROUND_LIGHT, allow_negative_numbers = true)]
     background_light: f64,
 }
 
@@ -77,8 +80,10 @@ impl FromStr for Background {
 #[derive(Debug, Clone)]
 enum Behind {
     Nothing,
-    Stars(StarField),
-    Photograph(Picture),
+    /// With its seed.
+    Stars(StarField, u64),
+    /// With a hash of its file.
+    Photograph(Picture, u64),
 }
 
 /// Where pictures are developed.
@@ -105,6 +110,14 @@ pub struct Negative<'a> {
 }
 
 impl DevelopArguments {
+    /// Whether nothing is asked for.
+    #[must_use]
+    pub fn is_usual(&self) -> bool {
+        let usual =
+            DevelopArguments { white: White::Found, gamma: None, background: None, background_light: BACKGROUND_LIGHT };
+        *self == usual
+    }
+
     /// Reads the photograph, and checks the numbers.
     ///
     /// # Errors
@@ -120,7 +133,7 @@ impl DevelopArguments {
         }
         let behind = match &self.background {
             None => Behind::Nothing,
-            Some(Background::Stars(seed)) => Behind::Stars(StarField::seeded(*seed, STARS)),
+            Some(Background::Stars(seed)) => Behind::Stars(StarField::seeded(*seed, STARS), *seed),
             Some(Background::File(name)) => {
                 let asked = |error: &dyn std::fmt::Display| Failure::asked(format!("{name}: {error}"));
                 let length = std::fs::metadata(Path::new(name)).map_err(|error| asked(&error))?.len();
@@ -128,7 +141,7 @@ impl DevelopArguments {
                     return Err(asked(&format!("{length} bytes: at most {} are read", read::MOST_BYTES)));
                 }
                 let bytes = std::fs::read(name).map_err(|error| asked(&error))?;
-                Behind::Photograph(read::picture(&bytes).map_err(|error| asked(&error))?)
+                Behind::Photograph(read::picture(&bytes).map_err(|error| asked(&error))?, fnv(&bytes))
             }
         };
         Ok(Darkroom { white: self.white, gamma: self.gamma, behind, background_light: self.background_light })
@@ -136,6 +149,17 @@ impl DevelopArguments {
 }
 
 impl Darkroom {
+    /// All that it does to light, in one line; a photograph by a hash of its file.
+    #[must_use]
+    pub fn said(&self) -> String {
+        let behind = match &self.behind {
+            Behind::Nothing => "nothing".to_owned(),
+            Behind::Stars(_, seed) => format!("stars of seed {seed}"),
+            Behind::Photograph(_, hash) => format!("photograph {hash:016x}"),
+        };
+        format!("white {:?}, gamma {:?}, behind {behind} at {}", self.white, self.gamma, self.background_light)
+    }
+
     /// The white that was asked for, if one was.
     #[must_use]
     pub fn fixed_white(&self) -> Option<f64> {
@@ -160,8 +184,8 @@ impl Darkroom {
         let Negative { width, height, camera, light, through } = *negative;
         let behind = match &self.behind {
             Behind::Nothing => return Ok(light.iter().map(|pixel| development.codes(*pixel)).collect()),
-            Behind::Stars(field) => field.draw(camera, width, height),
-            Behind::Photograph(picture) => photograph(picture, width, height),
+            Behind::Stars(field, _) => field.draw(camera, width, height),
+            Behind::Photograph(picture, _) => photograph(picture, width, height),
         };
         let strength = (self.background_light * white) as f32;
         let composed = light.iter().zip(through).zip(behind).enumerate().map(|(i, ((light, through), behind))| {

@@ -12,6 +12,7 @@ use super::files;
 use super::triple::{Edges, Place, Voxels};
 use crate::cli::sun::progress::Bar;
 use crate::cli::{Failure, answer, answer_json};
+use crate::physics::dust::volume::gas::Gas;
 use crate::physics::dust::volume::generate::{Octave, Recipe, RecipeError, octaves};
 
 /// The recipe, the grid, and where it goes.
@@ -20,10 +21,14 @@ use crate::physics::dust::volume::generate::{Octave, Recipe, RecipeError, octave
     scotopic nebula generate --seed 7 --size 128 --out V.fits\n  \
     scotopic nebula generate --seed 3 --octaves 7 --frequency 4 --persistence 0.65 --cavity 0.2 --out wisps.npy\n  \
     scotopic nebula generate --seed 5 --frequencies 2,8,32 --amplitudes 1,0.4,0.2 --out three-layers.nrrd\n  \
-    scotopic nebula generate --seed 9 --star=-0.3,0,0 --star 0.4,0.2,0 --clumps 40 --out two-stars.fits\n\n\
+    scotopic nebula generate --seed 9 --star=-0.3,0,0 --star 0.4,0.2,0 --clumps 40 --out two-stars.fits\n  \
+    scotopic nebula generate --seed 7 --emission glow.fits --emission-radius 0.6 --out V.fits\n  \
+    scotopic nebula render V.fits --emission glow.fits --emission-bands 3,0.2,0.6 --out both.png\n\n\
     Lengths are in half edges of the box: 1 is the middle of a face. The density at a place r from the centre is\n\
     (level + noise - decline (r/R)^2), where that is above 0, cleared in a cavity around each star. Densities are about 1;\n\
-    what they mean is said by --extinction when the volume is rendered. A finer grid of one seed samples the same nebula.")]
+    what they mean is said by --extinction when the volume is rendered. A finer grid of one seed samples the same nebula.\n\
+    --emission writes how brightly gas glows that lies as the dust does: with the square of the density, as lines of recombination\n\
+    do, within a radius around each star. What 1 means is said by --emission-bands when it is rendered.")]
 pub struct Arguments {
     /// Seed of everything that is random
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -85,6 +90,15 @@ pub struct Arguments {
     /// The file: .fits, .npy, .nrrd, or .nhdr with a .raw beside it
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// A second file in the same box: the glow of gas that the stars ionise, for `scotopic nebula render --emission`
+    #[arg(long, value_name = "FILE")]
+    emission: Option<PathBuf>,
+    /// How far from a star gas glows [default: 0.5]
+    #[arg(long, value_name = "R", allow_negative_numbers = true, requires = "emission")]
+    emission_radius: Option<f64>,
+    /// Thickness of the rim in which the glow ends [default: a quarter of the radius]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, requires = "emission")]
+    emission_rim: Option<f64>,
     /// Print no progress
     #[arg(long, short)]
     quiet: bool,
@@ -145,7 +159,9 @@ impl Arguments {
 /// # Errors
 /// A recipe that makes no nebula, or a file that could not be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    files::check_ending(&arguments.out)?;
+    for path in std::iter::once(&arguments.out).chain(&arguments.emission) {
+        files::check_ending(path)?;
+    }
     let Voxels(size) = arguments.size;
     let sides = DVec3::new(size[0] as f64, size[1] as f64, size[2] as f64);
     let edges = match arguments.edge {
@@ -159,12 +175,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             bar.show(share);
         }
     };
-    let volume =
-        arguments.recipe()?.generate(size, edges, &tell).map_err(|error: RecipeError| Failure::asked(error))?;
+    let recipe = arguments.recipe()?;
+    let volume = recipe.generate(size, edges, &tell).map_err(|error: RecipeError| Failure::asked(error))?;
     if let Ok(bar) = bar.into_inner() {
         bar.end();
     }
-    let files = files::save(&arguments.out, &volume)?;
+    let mut files = files::save(&arguments.out, &volume)?;
+    if let Some(path) = &arguments.emission {
+        let radius = arguments.emission_radius.unwrap_or(0.5);
+        let gas = Gas { stars: recipe.swept, radius, rim: arguments.emission_rim.unwrap_or(0.25 * radius) };
+        files.extend(files::save(path, &gas.around(&volume).map_err(Failure::asked)?)?);
+    }
     let filled =
         volume.density().iter().filter(|density| **density > 0.0).count() as f64 / volume.density().len() as f64;
     let seconds = begin.elapsed().as_secs_f64();
@@ -179,7 +200,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     answer(&format!(
         "{}: {} x {} x {} voxels, {:.0} % of them with dust, seed {}, {seconds:.1} s",
-        arguments.out.display(),
+        files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", "),
         size[0],
         size[1],
         size[2],

@@ -3,20 +3,20 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
 use super::eye::EyeArguments;
 use super::files::{self, VolumeArguments};
+use super::lighting::{self, Glow, LightingArguments, Model};
 use super::out;
 use super::scene::{Document, SceneArguments};
 use super::triple::Edges;
 use crate::cli::sun::progress::Bar;
 use crate::cli::{Failure, answer, answer_json};
 use crate::physics::dust::drawing::{Drawing, Light, Prepared};
-use crate::physics::dust::march::Emission;
+use crate::physics::dust::multiple;
 use crate::physics::dust::multiple::field::Told;
-use crate::physics::dust::multiple::{self, Settings};
 use crate::physics::dust::render::{Rendered, View, Wish};
 use crate::physics::dust::scene::Scene;
 use crate::physics::dust::volume::Volume;
@@ -24,27 +24,6 @@ use crate::physics::dust::voxelwise::Literal;
 
 /// What is told of a picture.
 mod explain;
-
-/// How light is scattered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Model {
-    /// The thesis': each voxel by the scattering table
-    Table,
-    /// Light that has been scattered once, exactly
-    Single,
-    /// Single, and light that has been scattered before
-    Multiple,
-}
-
-/// A formula of the thesis that may be taken as it is printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LiteralForm {
-    /// Equation 5.2: times the albedo once more
-    Albedo,
-    /// Equation 5.7: the eye's ray is dimmed by depth / albedo
-    Depth,
-}
 
 /// The nebula, the eye and where the picture goes.
 #[derive(Debug, Clone, Args)]
@@ -65,12 +44,8 @@ pub struct Arguments {
     scene: SceneArguments,
     #[command(flatten)]
     eye: EyeArguments,
-    /// How light is scattered [default: multiple]
-    #[arg(long, value_name = "NAME")]
-    model: Option<Model>,
-    /// For table: a formula of the thesis as it is printed, again for more [default: the corrected forms]
-    #[arg(long, value_name = "FORM", value_delimiter = ',')]
-    literal: Vec<LiteralForm>,
+    #[command(flatten)]
+    lighting: LightingArguments,
     /// The picture, again for more: .npy, .fits, .exr, .png
     #[arg(long, value_name = "FILE", required = true)]
     out: Vec<PathBuf>,
@@ -83,27 +58,6 @@ pub struct Arguments {
     /// One picture for each number of scatterings, up to N (the last holds all that follow): FILE-1, FILE-2, ...
     #[arg(long, value_name = "N")]
     orders: Option<usize>,
-    /// Relative error to stay below [default: 0.001]
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
-    tolerance: Option<f64>,
-    /// Longest piece of a ray, voxels [default: what the tolerance needs]
-    #[arg(long, value_name = "VOXELS", allow_negative_numbers = true)]
-    step: Option<f64>,
-    /// For multiple: most flights of photons [default: 1000000]
-    #[arg(long, value_name = "N")]
-    flights: Option<u64>,
-    /// For multiple: highest order of spherical harmonics, 0 to 8 [default: 4]
-    #[arg(long, value_name = "L")]
-    harmonics: Option<usize>,
-    /// For multiple: cells along the longest edge [default: half the voxels, 16 to 32]
-    #[arg(long, value_name = "N")]
-    cells: Option<usize>,
-    /// Light that the dust itself gives off: a volume in the same box
-    #[arg(long, value_name = "FILE")]
-    emission: Option<PathBuf>,
-    /// Its radiance per unit of length at 1, a number for each band [default: 1]
-    #[arg(long, value_name = "E[,E...]", value_delimiter = ',', allow_hyphen_values = true, requires = "emission")]
-    emission_bands: Option<Vec<f64>>,
     /// For .png: the light that is shown as full [default: the brightest but for 0.5 % of the pixels]
     #[arg(long, value_name = "RADIANCE", allow_negative_numbers = true)]
     white: Option<f64>,
@@ -116,9 +70,6 @@ pub struct Arguments {
     /// Say what was left out and why, and the error reached
     #[arg(long)]
     explain: bool,
-    /// Seed of photons and of the rays on which errors are measured [default: 1]
-    #[arg(long, value_name = "S")]
-    seed: Option<u64>,
     /// Print no notes and no progress
     #[arg(long, short)]
     quiet: bool,
@@ -143,32 +94,22 @@ struct Made {
 /// The volume or the scene cannot be, or a file could not be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for path in arguments.out.iter().chain(&arguments.through).chain(&arguments.errors) {
-        out::check_ending(path)?;
+        out::Format::of(path)?;
     }
     let said = arguments.scene.document()?;
-    let (scene, wish, model) = (arguments.scene.scene(&said)?, arguments.wish(&said)?, arguments.model(&said)?);
+    let (scene, wish) = (arguments.scene.scene(&said)?, arguments.lighting.wish(&said, arguments.everything)?);
+    let (model, literal) = arguments.lighting.model(&said)?;
     let edge = arguments.volume.edge.or(said.edge.map(Edges::Longest));
     let volume = files::open(&arguments.volume.volume, edge)?;
     let view = arguments.eye.view(&said, &volume)?;
-    let glow = match &arguments.emission {
-        Some(path) => {
-            let glow = files::open(path, Some(Edges::Each(volume.edges())))?;
-            Some((glow, arguments.glow_bands(scene.bands())?))
-        }
-        None => None,
-    };
-    let emission = glow.as_ref().map(|(volume, bands)| Emission { volume, bands });
+    let glow = arguments.lighting.glow(&volume, scene.bands())?;
+    let emission = glow.as_ref().map(Glow::emission);
 
-    if model != Model::Table && arguments.literal(&said) != Literal::default() {
-        return Err(Failure::asked(
-            "literal forms are those of the table: give --model table with them, or leave --literal out",
-        ));
-    }
     let begin = Instant::now();
     if let Some(orders) = arguments.orders {
-        return arguments.by_order(&volume, &scene, &view, &wish, orders);
+        return arguments.by_order(&volume, &scene, &view, &wish, (orders, &said));
     }
-    let (light, told) = arguments.light(model, &volume, &scene, &said)?;
+    let (light, told) = arguments.light((model, literal), &volume, &scene, &said)?;
     let light_time = begin.elapsed();
     let quick = Wish { everything: false, ..wish };
     let made = arguments.draw(Drawing::new(&volume, &scene, light.clone(), emission), &view, &quick);
@@ -206,62 +147,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    fn wish(&self, said: &Document) -> Result<Wish, Failure> {
-        let tolerance = self.tolerance.or(said.tolerance).unwrap_or(1e-3);
-        if !(1e-6..=0.5).contains(&tolerance) {
-            return Err(Failure::asked(format!("a tolerance of {tolerance}: give a relative error from 1e-6 to 0.5")));
-        }
-        let step = self.step.or(said.step);
-        if let Some(step) = step.filter(|step| !(0.01..=64.0).contains(step)) {
-            return Err(Failure::asked(format!("a step of {step} voxels: give 0.01 to 64")));
-        }
-        let seed = self.seed.or(said.seed).unwrap_or(1);
-        Ok(Wish { tolerance, step, everything: self.everything, seed })
-    }
-
-    fn model(&self, said: &Document) -> Result<Model, Failure> {
-        match (self.model, &said.model) {
-            (Some(model), _) => Ok(model),
-            (None, Some(name)) => Model::from_str(name, false)
-                .map_err(|_unknown| Failure::asked(format!("model = '{name}': there are table, single and multiple"))),
-            (None, None) => Ok(Model::Multiple),
-        }
-    }
-
-    fn glow_bands(&self, bands: usize) -> Result<Vec<f64>, Failure> {
-        let glow = match self.emission_bands.as_deref() {
-            None => vec![1.0; bands],
-            Some([one]) => vec![*one; bands],
-            Some(list) => list.to_vec(),
-        };
-        if glow.len() != bands || glow.iter().any(|light| !(light.is_finite() && *light >= 0.0)) {
-            return Err(Failure::asked(format!(
-                "--emission-bands {glow:?}: give one number of 0 or more, or one for each of {bands} bands"
-            )));
-        }
-        Ok(glow)
-    }
-
-    fn settings(&self, volume: &Volume, said: &Document) -> Settings {
-        let usual = Settings::fitting(volume);
-        Settings {
-            order: self.harmonics.unwrap_or(usual.order),
-            cells: self.cells.unwrap_or(usual.cells),
-            flights: self.flights.unwrap_or(usual.flights),
-            seed: self.seed.or(said.seed).unwrap_or(usual.seed),
-            ..usual
-        }
-    }
-
-    /// The formulas of the thesis that are taken as printed, from flags and scene file together.
-    fn literal(&self, said: &Document) -> Literal {
-        let has = |form| self.literal.contains(&form) || said.literal.contains(&form);
-        Literal { albedo: has(LiteralForm::Albedo), depth: has(LiteralForm::Depth) }
-    }
-
     fn light(
         &self,
-        model: Model,
+        (model, literal): (Model, Literal),
         volume: &Volume,
         scene: &Scene,
         said: &Document,
@@ -269,19 +157,12 @@ impl Arguments {
         match model {
             Model::Single => Ok((Light::Single, None)),
             Model::Multiple => {
-                let field = multiple::gather(volume, scene, &self.settings(volume, said)).map_err(Failure::asked)?;
+                let settings = self.lighting.settings(volume, said);
+                let field = multiple::gather(volume, scene, &settings).map_err(Failure::asked)?;
                 let told = field.told();
                 Ok((Light::Multiple(Box::new(field)), Some(told)))
             }
-            Model::Table => {
-                let table = super::table::for_pictures(
-                    scene.dust().albedo,
-                    scene.dust().phase,
-                    deepest_voxel(volume, scene),
-                    self.quiet,
-                )?;
-                Ok((Light::Table(Box::new(table), self.literal(said)), None))
-            }
+            Model::Table => Ok((lighting::table(volume, scene, literal, self.quiet)?, None)),
         }
     }
 
@@ -310,13 +191,20 @@ impl Arguments {
     }
 
     /// One picture for each number of scatterings.
-    fn by_order(&self, volume: &Volume, scene: &Scene, view: &View, wish: &Wish, orders: usize) -> Result<(), Failure> {
+    fn by_order(
+        &self,
+        volume: &Volume,
+        scene: &Scene,
+        view: &View,
+        wish: &Wish,
+        (orders, said): (usize, &Document),
+    ) -> Result<(), Failure> {
         if !(1..=20).contains(&orders) {
             return Err(Failure::asked(format!("--orders {orders}: give 1 to 20")));
         }
         let mut lights = vec![Light::Single];
         if orders > 1 {
-            let settings = self.settings(volume, &Document::default());
+            let settings = self.lighting.settings(volume, said);
             let fields = multiple::gather_by_order(volume, scene, &settings, orders - 1).map_err(Failure::asked)?;
             lights.extend(fields.into_iter().map(|field| Light::Before(Box::new(field))));
         }
@@ -345,14 +233,4 @@ impl Arguments {
         let lines: Vec<String> = (1..).zip(&means).map(line).collect();
         answer(&lines.join("\n"))
     }
-}
-
-/// Depth of extinction along the edge of the densest voxel, in the band with the most: how far the table has to go.
-pub(super) fn deepest_voxel(volume: &Volume, scene: &Scene) -> f64 {
-    let most = volume.density().iter().copied().fold(0.0, f32::max);
-    let voxel = volume.voxel();
-    let edge = (voxel.x * voxel.y * voxel.z).cbrt();
-    let steepest = scene.dust().extinction.iter().copied().fold(0.0, f64::max);
-    // The table's rows are at most 10000 deep along a radius, and thin dust needs a table too.
-    (f64::from(most) * edge * steepest * 1.000_001).clamp(1e-3, 1e4)
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use etcetera::BaseStrategy;
 use serde_json::json;
 
+use super::cache;
 use super::photons::count;
 use crate::cli::sun::progress::Bar;
 use crate::cli::{Failure, answer, answer_json, note};
@@ -126,9 +126,9 @@ impl Recipe {
     ///
     /// # Errors
     /// A table that cannot be. A cache that cannot be read or written is only noted.
-    fn table(&self, cache: Option<&Path>, quiet: bool) -> Result<Kept, Failure> {
+    fn table(&self, folder: Option<&Path>, quiet: bool) -> Result<Kept, Failure> {
         let key = self.key();
-        let path = cache.map(|folder| folder.join(format!("{:016x}.csv", fnv(&key))));
+        let path = folder.map(|folder| cache::path(folder, &key, "csv"));
         if let Some(made) = path.as_deref().and_then(|path| remembered(path, &key)) {
             return Ok(Kept { made, cached: true });
         }
@@ -156,7 +156,7 @@ impl Recipe {
                 made.photons,
                 made.events
             );
-            if let Err(error) = keep(&path, &text) {
+            if let Err(error) = cache::keep(&path, text.as_bytes()) {
                 note(&format!("the table is not kept: {}: {error}", path.display()));
             }
         }
@@ -181,12 +181,7 @@ pub fn for_pictures(albedo: f64, phase: HenyeyGreenstein, deepest: f64, quiet: b
     let parameters = Parameters { albedo, phase, deepest, ..thesis };
     let accuracy = Accuracy { relative: Some(0.01), photons: None, most_events: 10_000_000_000 };
     let recipe = Recipe { parameters, method: Method::Shared, accuracy, threshold: 1e-12, seed: 1 };
-    Ok(recipe.table(cache_folder().as_deref(), quiet)?.made.table)
-}
-
-/// The folder in which tables are kept, if the user has one.
-fn cache_folder() -> Option<PathBuf> {
-    etcetera::choose_base_strategy().ok().map(|base| base.cache_dir().join("scotopic").join("tables"))
+    Ok(recipe.table(cache::folder("tables").as_deref(), quiet)?.made.table)
 }
 
 /// A table that was kept under a key.
@@ -199,19 +194,6 @@ fn remembered(path: &Path, key: &str) -> Option<Made> {
     }
     let (photons, events) = (find("# photons")?.parse().ok()?, find("# events")?.parse().ok()?);
     Some(Made { table: file::read(&text).ok()?, photons, events })
-}
-
-/// Writes a file beside its place and moves it there, so that nobody finds half of it.
-fn keep(path: &Path, text: &str) -> std::io::Result<()> {
-    std::fs::create_dir_all(path.parent().unwrap_or(Path::new("")))?;
-    let beside = path.with_extension(format!("{}.part", std::process::id()));
-    std::fs::write(&beside, text)?;
-    std::fs::rename(beside, path)
-}
-
-/// The hash of Fowler, Noll and Vo (1a, 64 bits): a file's name, no secret.
-fn fnv(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Makes the table, writes and prints.
@@ -232,8 +214,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::asked(format!("{}: the figure is written as .svg", path.display())));
     }
     let begin = Instant::now();
-    let cache = if arguments.no_cache { None } else { arguments.cache.clone().or_else(cache_folder) };
-    let Kept { made: Made { table, photons, events }, cached } = recipe.table(cache.as_deref(), arguments.quiet)?;
+    let folder = if arguments.no_cache { None } else { arguments.cache.clone().or_else(|| cache::folder("tables")) };
+    let Kept { made: Made { table, photons, events }, cached } = recipe.table(folder.as_deref(), arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();
 
     let mut files = Vec::new();

@@ -2,6 +2,10 @@
 
 use glam::DVec3;
 
+use crate::numerics::hash::mixed;
+
+/// Gas that glows in the dust.
+pub mod gas;
 /// Nebulae made by a recipe.
 pub mod generate;
 /// Perlin's noise.
@@ -111,6 +115,16 @@ impl Volume {
         &self.density
     }
 
+    /// A number that stands for all that is in it: volumes with different sides, edges or dust have different ones but for a chance of 1 in 2^64.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let sides = self.size.iter().map(|side| *side as u64);
+        let edges = self.edges.to_array().map(f64::to_bits);
+        let head = sides.chain(edges).fold(0, mixed);
+        // +0 and -0 are the same dust.
+        self.density.iter().fold(head, |hash, density| mixed(hash, u64::from((density + 0.0).to_bits())))
+    }
+
     /// Where the centre of a voxel is.
     #[must_use]
     pub fn centre(&self, x: usize, y: usize, z: usize) -> DVec3 {
@@ -151,6 +165,21 @@ mod tests {
             assert!(told.contains("x 0, y 1, z 1"), "{told}");
         }
         assert_eq!(grid(3.0).unwrap().at(DVec3::new(-0.5, 0.5, 0.5)), 3.0);
+    }
+
+    #[test]
+    fn a_digest_tells_volumes_apart_by_dust_sides_and_edges() {
+        let of =
+            |size, edge, density: [f32; 4]| Volume::new(size, DVec3::splat(edge), density.to_vec()).unwrap().digest();
+        let one = of([2, 2, 1], 2.0, [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(one, of([2, 2, 1], 2.0, [-0.0, 1.0, 2.0, 3.0]));
+        let others = [
+            of([2, 2, 1], 2.0, [0.0, 1.0, 3.0, 2.0]),
+            of([2, 2, 1], 2.0, [0.0, 1.0, 2.0, 3.000_000_2]),
+            of([4, 1, 1], 2.0, [0.0, 1.0, 2.0, 3.0]),
+            of([2, 2, 1], 2.5, [0.0, 1.0, 2.0, 3.0]),
+        ];
+        assert!(others.iter().all(|other| *other != one), "{one} {others:?}");
     }
 
     #[test]

@@ -50,6 +50,8 @@ pub struct Folder {
 
 /// The file that says what the frames of a folder show.
 const SETTINGS: &str = "flight.txt";
+/// So much of a line of it is told.
+const LONGEST_SAID: usize = 200;
 
 impl Folder {
     /// Makes the folder if it is not there.
@@ -65,11 +67,12 @@ impl Folder {
             Ok(there) => {
                 let pair = there.lines().zip(settings.lines()).find(|(there, here)| there != here);
                 let (there, here) = pair.unwrap_or(("", ""));
+                let [there, here] = [there, here].map(|line| line.chars().take(LONGEST_SAID).collect::<String>());
                 return Err(Failure::asked(format!(
                     "{}: its frames are of another flight ({} there, {} now): give another folder, or empty this one",
                     path.display(),
-                    crate::cli::printable(there),
-                    crate::cli::printable(here)
+                    crate::cli::printable(&there),
+                    crate::cli::printable(&here)
                 )));
             }
             Err(_not_there) => folder.save(SETTINGS, settings.as_bytes())?,
@@ -95,12 +98,12 @@ impl Folder {
         (0..self.frames).filter(|number| !self.has(*number, ending)).count()
     }
 
-    /// Writes a frame.
+    /// Writes a frame, or what belongs to one: `tail` stands behind its number.
     ///
     /// # Errors
     /// The disk's.
-    pub fn save_frame(&self, number: usize, ending: &str, bytes: &[u8]) -> Result<(), Failure> {
-        self.save(&format!("frame-{number:05}.{ending}"), bytes)
+    pub fn save_frame(&self, number: usize, tail: &str, bytes: &[u8]) -> Result<(), Failure> {
+        self.save(&format!("frame-{number:05}{tail}"), bytes)
     }
 
     /// Writes a file of the folder whole or not at all: under another name first, so that nobody takes half of it for a frame.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::cli::Failure;
-use crate::cli::nebula::render::LiteralForm;
+use crate::cli::nebula::lighting::LiteralForm;
 use crate::cli::settings::explain;
 
 /// Larger files are no scenes.

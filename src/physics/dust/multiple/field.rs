@@ -3,11 +3,19 @@
 use glam::DVec3;
 
 use super::cells::{Cells, NONE};
-use super::harmonics::{Harmonics, MOST};
+use super::harmonics::Harmonics;
 use super::walk::{LANES, Part};
 use crate::physics::dust::camera::Ray;
 use crate::physics::dust::model::Scattering;
 use crate::physics::dust::scene::Dust;
+
+/// Fields as bytes, to be kept.
+pub mod file;
+mod noise;
+mod seen;
+
+pub(super) use noise::noise;
+pub use seen::Seen;
 
 /// What gathering has cost and what it believes to have missed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
@@ -215,49 +223,6 @@ impl Field {
         })
     }
 
-    /// The field as one direction sees it: cheap to look up along parallel rays.
-    #[must_use]
-    pub fn along(&self, towards: DVec3) -> Seen<'_> {
-        let functions = self.harmonics.at(towards);
-        self.seen(None, |_| functions)
-    }
-
-    /// The field as an eye sees it, every cell in the direction from its centre to the eye; near the eye, each point in its own.
-    #[must_use]
-    pub fn from(&self, eye: DVec3) -> Seen<'_> {
-        self.seen(Some(eye), |centre| self.harmonics.at((eye - centre).normalize_or(DVec3::Z)))
-    }
-
-    fn seen(&self, eye: Option<DVec3>, functions: impl Fn(DVec3) -> [f64; MOST]) -> Seen<'_> {
-        let (count, groups) = (self.harmonics.count(), self.bands.div_ceil(LANES));
-        let mut sources = vec![[0.0_f32; LANES]; self.used * groups];
-        for (cell, slot) in self.slots.iter().enumerate().filter(|(_, slot)| **slot != NONE) {
-            let (x, rest) = (cell % self.size[0], cell / self.size[0]);
-            let index = DVec3::new(x as f64, (rest % self.size[1]) as f64, (rest / self.size[1]) as f64);
-            let functions = functions(self.edges * ((index + 0.5) / self.counts() - 0.5)).map(|y| y as f32);
-            for group in 0..groups {
-                let sum = &mut sources[group * self.used + *slot as usize];
-                let all = self.coefficients(group, *slot as usize);
-                for (four, function) in all.chunks_exact(LANES).zip(&functions[..count]) {
-                    for (sum, coefficient) in sum.iter_mut().zip(four) {
-                        *sum += coefficient * function;
-                    }
-                }
-            }
-        }
-        let mut highest = vec![[0.0_f32; LANES]; groups];
-        for (index, source) in sources.iter().enumerate() {
-            for (high, source) in highest[index / self.used].iter_mut().zip(source) {
-                *high = high.max(*source);
-            }
-        }
-        if eye.is_some() {
-            // Near the eye all directions occur: |sum of J_lm Y_lm| over m is at most sqrt((2 l + 1)/(4 pi) sum of J_lm^2).
-            highest.clone_from(&self.bounds);
-        }
-        Seen { field: self, eye, sources, highest }
-    }
-
     fn counts(&self) -> DVec3 {
         DVec3::new(self.size[0] as f64, self.size[1] as f64, self.size[2] as f64)
     }
@@ -301,113 +266,9 @@ impl Scattering for Field {
     }
 }
 
-/// A field seen from somewhere: one number for each cell and band. The direction asked for is only looked at near the eye.
-#[derive(Debug, Clone)]
-pub struct Seen<'a> {
-    field: &'a Field,
-    eye: Option<DVec3>,
-    /// By group of four bands and slot.
-    sources: Vec<[f32; LANES]>,
-    /// By group of four bands.
-    highest: Vec<[f32; LANES]>,
-}
-
-/// Cells from the eye within which each point is seen in its own direction.
-const NEAR: f64 = 4.0;
-
-impl Scattering for Seen<'_> {
-    fn name(&self) -> &'static str {
-        self.field.name()
-    }
-
-    fn source(&self, point: DVec3, towards: DVec3, out: &mut [f64]) {
-        let near = self
-            .eye
-            .is_some_and(|eye| ((point - eye) / self.field.edges * self.field.counts()).length_squared() < NEAR * NEAR);
-        if near {
-            return self.field.source(point, towards, out);
-        }
-        out.fill(0.0);
-        for (slot, share) in self.field.about(point) {
-            if slot == NONE {
-                continue;
-            }
-            for (group, out) in out.chunks_mut(LANES).enumerate() {
-                if let Some(here) = self.sources.get(group * self.field.used + slot as usize) {
-                    for (out, here) in out.iter_mut().zip(here) {
-                        *out += share * f64::from(*here);
-                    }
-                }
-            }
-        }
-        out.iter_mut().for_each(|source| *source = source.max(0.0));
-    }
-
-    fn ceiling(&self, _: &Ray, _: f64, _: f64, out: &mut [f64]) {
-        spread(&self.highest, out);
-    }
-
-    fn error(&self) -> f64 {
-        self.field.error()
-    }
-}
-
 /// A number for each band from groups of four; a little more than it, as sums are rounded.
 fn spread(groups: &[[f32; LANES]], out: &mut [f64]) {
     for (out, bound) in out.iter_mut().zip(groups.iter().flatten()) {
         *out = f64::from(*bound) * (1.0 + 1e-6);
     }
-}
-
-/// Noise of columns of cells along an axis, as a share of their light, from the differences between the parts; the worst axis of all orders together.
-pub(super) fn noise(cells: &Cells, parts: &[Part<'_>], harmonics: &Harmonics, orders: usize) -> f64 {
-    let stride = harmonics.count() * LANES;
-    let [nx, ny, _] = cells.size;
-    let mut worst = 0.0_f64;
-    for axis in 0..3 {
-        let kept = |x: usize, y: usize, z: usize| match axis {
-            0 => (y, z),
-            1 => (x, z),
-            _ => (x, y),
-        };
-        let wide = if axis == 0 { ny } else { nx };
-        let high = if axis == 2 { ny } else { cells.size[2] };
-        // Of each column and band: the sum over parts and the sum of squares.
-        let mut sums = vec![[0.0_f64; 2 * LANES]; wide * high];
-        for part in parts {
-            let mut columns = vec![[0.0_f64; LANES]; wide * high];
-            for (cell, slot) in cells.slots.iter().enumerate().filter(|(_, slot)| **slot != NONE) {
-                let (x, rest) = (cell % nx, cell / nx);
-                let (a, b) = kept(x, rest % ny, rest / ny);
-                let dust = f64::from(cells.density(cell)) / part.done.photons.max(1) as f64;
-                for order in 0..orders {
-                    let at = (order * cells.used + *slot as usize) * stride;
-                    for (sum, tally) in columns[b * wide + a].iter_mut().zip(&part.tally[at..at + LANES]) {
-                        *sum += dust * f64::from(*tally);
-                    }
-                }
-            }
-            for (sums, column) in sums.iter_mut().zip(&columns) {
-                for lane in 0..LANES {
-                    sums[lane] += column[lane];
-                    sums[LANES + lane] += column[lane] * column[lane];
-                }
-            }
-        }
-        let n = parts.len() as f64;
-        let (mut light, mut noise) = ([0.0; LANES], [0.0; LANES]);
-        for sums in &sums {
-            for lane in 0..LANES {
-                let mean = sums[lane] / n;
-                light[lane] += mean;
-                noise[lane] += ((sums[LANES + lane] / n - mean * mean).max(0.0) / (n - 1.0)).sqrt();
-            }
-        }
-        for lane in 0..LANES {
-            if light[lane] > 0.0 {
-                worst = worst.max(noise[lane] / light[lane]);
-            }
-        }
-    }
-    worst
 }

@@ -280,7 +280,7 @@ impl Nebula<'_> {
 }
 
 /// Smoothly from 0 at one place to 1 at another: 3 t^2 - 2 t^3; a step where they are one.
-fn rise(from: f64, to: f64, at: f64) -> f64 {
+pub(super) fn rise(from: f64, to: f64, at: f64) -> f64 {
     if at <= from {
         return 0.0;
     }
