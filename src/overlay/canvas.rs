@@ -89,6 +89,9 @@ impl Area {
     }
 }
 
+/// Pixels that are looked at together for whether anything is drawn on them: lines leave most of a row empty.
+const FEW: usize = 32;
+
 /// Shapes of one colour: drawn as coverage, then laid over the picture at once.
 pub struct Ink {
     mask: Mask,
@@ -136,8 +139,12 @@ impl Ink {
         for y in self.rows.clone() {
             let coverage = &mut self.mask.data_mut()[y * width..(y + 1) * width];
             let span = region.span(y);
-            for (pixel, &covered) in picture.row_mut(y)[span.clone()].iter_mut().zip(&coverage[span]) {
-                if covered > 0 {
+            let pixels = picture.row_mut(y)[span.clone()].chunks_mut(FEW);
+            for (pixels, covered) in pixels.zip(coverage[span].chunks(FEW)) {
+                if covered.iter().fold(0, |any, &covered| any | covered) == 0 {
+                    continue;
+                }
+                for (pixel, &covered) in pixels.iter_mut().zip(covered).filter(|(_, covered)| **covered > 0) {
                     over(pixel, colour, f32::from(covered) / 255.0);
                 }
             }

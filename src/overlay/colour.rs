@@ -1,5 +1,7 @@
 //! The colour of a star from its B-V, and of everything in the red palette.
 
+use glam::Vec3A;
+
 use super::style::Palette;
 
 /// Linear sRGB of a star, its brightest channel 1.
@@ -47,12 +49,16 @@ pub fn black_body(kelvin: f32) -> [f32; 3] {
     rgb.map(|channel| (channel / brightest).max(0.0))
 }
 
-/// Light in the palette: as it is, or all of its luminance (IEC 61966-2-1 weights, so that white keeps its drive) in red.
+/// The weights of linear sRGB's channels in its luminance: IEC 61966-2-1.
+pub const LUMINANCE: Vec3A = Vec3A::new(0.2126, 0.7152, 0.0722);
+
+/// Light in the palette: as it is, or all of its luminance in red, so that white keeps its drive.
 #[must_use]
-pub fn in_palette(palette: Palette, light: [f32; 3]) -> [f32; 3] {
+#[inline]
+pub fn in_palette(palette: Palette, light: Vec3A) -> Vec3A {
     match palette {
         Palette::Natural => light,
-        Palette::Red => [0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2], 0.0, 0.0],
+        Palette::Red => Vec3A::new(light.dot(LUMINANCE), 0.0, 0.0),
     }
 }
 
@@ -62,9 +68,11 @@ pub fn in_palette(palette: Palette, light: [f32; 3]) -> [f32; 3] {
 /// g v / (1 + (g - 1) v)        g > 1;        g v        g <= 1
 /// ```
 #[must_use]
-pub fn lifted(light: f32, gain: f32) -> f32 {
-    let light = light.clamp(0.0, 1.0);
-    gain * light / (1.0 + (gain - 1.0).max(0.0) * light)
+#[inline]
+pub fn lifted(light: Vec3A, gain: f32) -> Vec3A {
+    let light = light.max(Vec3A::ZERO).min(Vec3A::ONE);
+    // Most photographs are not lifted, and a division for each of their pixels is dear.
+    if gain > 1.0 { light * gain / (Vec3A::ONE + light * (gain - 1.0)) } else { light * gain }
 }
 
 #[cfg(test)]
@@ -73,8 +81,10 @@ mod tests {
 
     #[test]
     fn lifting_brightens_the_dark_and_keeps_the_bright_apart() {
+        let lifted = |light: f32, gain| lifted(Vec3A::splat(light), gain).y;
         assert!((lifted(0.001, 5.0) - 0.005).abs() < 1e-4 && (lifted(1.0, 5.0) - 1.0).abs() < 1e-6);
         assert!(lifted(0.9, 5.0) > lifted(0.8, 5.0) + 0.02 && (lifted(0.5, 0.5) - 0.25).abs() < 1e-6);
+        assert_eq!((lifted(f32::NAN, 5.0), lifted(-1.0, 0.5)), (0.0, 0.0));
     }
 
     #[test]
@@ -88,7 +98,7 @@ mod tests {
 
     #[test]
     fn the_red_palette_has_no_green_and_no_blue() {
-        let [red, green, blue] = in_palette(Palette::Red, [0.2, 0.9, 0.4]);
+        let [red, green, blue] = in_palette(Palette::Red, Vec3A::new(0.2, 0.9, 0.4)).to_array();
         assert!(red > 0.0 && green == 0.0 && blue == 0.0);
     }
 }

@@ -10,8 +10,9 @@ use super::photograph::Photograph;
 use super::stars::Starlight;
 use super::style::{Eye, Mode, Style};
 use super::text::{Scribe, Weight};
-use super::tone::{Curve, Lights};
-use super::{colour, information, stars};
+use super::tone::Lights;
+use super::tone::curve::{Curve, as_thrown};
+use super::{information, stars};
 use crate::picture::Picture;
 use crate::sky::catalogue::{Catalogue, FieldObject, FieldStar, Found, Object};
 use crate::sky::ephemeris::{Almanac, InView};
@@ -59,7 +60,8 @@ pub struct Composer {
 /// Photographs laid on a canvas, and for which view.
 struct Laid {
     view: (Projection, Region, Style, f32, Option<SurfaceBrightness>, Vec<String>),
-    picture: Picture,
+    /// None as long as the view was asked for only once.
+    picture: Option<Picture>,
     /// Whose they are and on which terms they are shown, of those that are seen.
     credits: Vec<String>,
 }
@@ -136,8 +138,15 @@ impl Composer {
             }
             menu.draw(&mut picture, &mut ink, style, &visible);
         }
-        for light in picture.pixels_mut().iter_mut().flatten() {
-            *light = (*light * style.gain).clamp(0.0, style.ceiling);
+        // The last word on light: what cannot be seen is black, and no number is no light.
+        let ceiling = style.ceiling.max(0.0);
+        for y in 0..height {
+            let (seen, row) = (visible.span(y), picture.row_mut(y));
+            for light in row[seen.clone()].as_flattened_mut() {
+                *light = (*light * style.gain).max(0.0).min(ceiling);
+            }
+            row[..seen.start].fill([0.0; 3]);
+            row[seen.end..].fill([0.0; 3]);
         }
         self.ink = Some(ink);
         picture
@@ -164,14 +173,14 @@ impl Composer {
         let own = target.as_ref().and_then(|target| target.surface_brightness);
         let (mut picture, mut credits) = self.photographs(still, field, style, own, &view);
         if let Some(frame) = scene.animation
-            && frame.draw(&mut picture, &view.region, &view.projection, photographs_light(style, &self.curve, 1.0))
+            && frame.draw(&mut picture, &view.region, &view.projection, as_thrown(style, self.curve.as_ref(), 1.0))
         {
             credits.extend(frame.credit_line());
         }
         let photographed = !still.is_empty() || scene.animation.is_some();
         let starlight = Starlight { palette: style.palette, share: stars };
         draw_stars(&mut picture, scene, field, starlight, &view, photographed);
-        draw_bodies(&mut picture, scene, style, starlight, &view, &self.maps, &self.curve, &mut self.discs);
+        draw_bodies(&mut picture, scene, style, starlight, &view, &self.maps, self.curve.as_ref(), &mut self.discs);
         let outlines = outlines(scene, &view);
         self.draw_marks(&mut picture, ink, &outlines, target.as_ref(), field, style, &view, visible);
 
@@ -191,8 +200,8 @@ impl Composer {
         picture
     }
 
-    /// A picture with the photographs on it (from last time, if nothing changed), and the credits of those that are seen. The
-    /// finer ones lie over the coarser.
+    /// A picture with the photographs on it (copied from the third time on, if nothing changed), and the credits of those that
+    /// are seen. The finer ones lie over the coarser.
     fn photographs(
         &mut self,
         all: &[Photograph],
@@ -207,22 +216,25 @@ impl Composer {
         let names = all.iter().map(|photograph| photograph.name.clone()).collect();
         let exponent = self.curve.as_ref().map_or(1.0, Curve::exponent);
         let wanted = (view.projection, view.region.clone(), style.clone(), exponent, own, names);
-        if let Some(laid) = self.photographs.as_ref().filter(|laid| laid.view == wanted) {
-            return (laid.picture.clone(), laid.credits.clone());
+        let again = self.photographs.as_ref().is_some_and(|laid| laid.view == wanted);
+        if let Some(Laid { picture: Some(picture), credits, .. }) = self.photographs.as_ref().filter(|_| again) {
+            return (picture.clone(), credits.clone());
         }
         let mut picture = Picture::black(field.width_px, field.height_px);
         let mut credits = Vec::new();
         let mut finest_last: Vec<&Photograph> = all.iter().collect();
         finest_last.sort_by(|a, b| b.plate.scale().to_radians().total_cmp(&a.plate.scale().to_radians()));
         for photograph in finest_last {
-            let light = photographs_light(style, &self.curve, photograph.gain(own));
+            let light = as_thrown(style, self.curve.as_ref(), photograph.gain(own));
             if photograph.draw(&mut picture, &view.region, &view.projection, light) {
                 credits.extend(photograph.credit_line());
             }
         }
         credits.reverse();
         credits.dedup();
-        self.photographs = Some(Laid { view: wanted, picture: picture.clone(), credits: credits.clone() });
+        // A field that drifts is never the same twice: copying its picture would be for nothing.
+        let kept = again.then(|| picture.clone());
+        self.photographs = Some(Laid { view: wanted, picture: kept, credits: credits.clone() });
         (picture, credits)
     }
 
@@ -463,19 +475,6 @@ impl Composer {
     }
 }
 
-/// A photograph's light, made brighter by `gain`, as the projector throws it: toned, in the palette.
-fn photographs_light<'a>(
-    style: &Style,
-    curve: &'a Option<Curve>,
-    gain: f32,
-) -> impl Fn([f32; 3]) -> [f32; 3] + use<'a> {
-    let (palette, share) = (style.palette, style.photograph);
-    move |light| {
-        let light = colour::in_palette(palette, light).map(|channel| colour::lifted(channel, gain));
-        curve.as_ref().map_or(light, |curve| curve.of(light)).map(|channel| channel.min(1.0) * share)
-    }
-}
-
 /// A text of at most so many characters; what is left out of its middle is an ellipsis, since terms stand at its end.
 fn shortened(text: &str, most: usize) -> String {
     let length = text.chars().count();
@@ -621,11 +620,11 @@ fn draw_bodies(
     starlight: Starlight,
     view: &View,
     maps: &[Map],
-    curve: &Option<Curve>,
+    curve: Option<&Curve>,
     discs: &mut globe::Kept,
 ) {
-    let light = photographs_light(style, curve, 1.0);
-    let exponent = curve.as_ref().map_or(1.0, Curve::exponent);
+    let light = as_thrown(style, curve, 1.0);
+    let exponent = curve.map_or(1.0, Curve::exponent);
     let key = [style.palette as u32, style.photograph.to_bits(), exponent.to_bits()];
     for seen in &scene.found.bodies {
         discs.draw(picture, &view.region, &view.projection, seen, maps, key, &light);

@@ -1,7 +1,7 @@
 //! Sun, Moon and planets as discs: phase, darkening towards the limb, flattening, Saturn's rings with the shadows, and a map
 //! wrapped on where the observer has one.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 
 use super::canvas::Region;
 use crate::picture::Picture;
@@ -53,7 +53,7 @@ pub fn draw(
     projection: &Projection,
     seen: &InView,
     maps: &[Map],
-    colour: impl Fn([f32; 3]) -> [f32; 3],
+    colour: impl Fn(Vec3A) -> Vec3A,
 ) {
     let Some((x, y)) = projection.pixel(&seen.position) else { return };
     let radius_px = projection.pixels(seen.globe.radius);
@@ -91,7 +91,8 @@ pub fn draw(
                 surface.light(e, n)
             };
             if light != [0.0; 3] {
-                picture.row_mut(j)[i].iter_mut().zip(colour(light)).for_each(|(sum, light)| *sum += light);
+                let sum = &mut picture.row_mut(j)[i];
+                *sum = (Vec3A::from(*sum) + colour(light.into())).into();
             }
         }
     }
@@ -135,7 +136,7 @@ impl Kept {
         seen: &InView,
         maps: &[Map],
         light: [u32; 3],
-        colour: impl Fn([f32; 3]) -> [f32; 3],
+        colour: impl Fn(Vec3A) -> Vec3A,
     ) {
         let radius_px = projection.pixels(seen.globe.radius);
         if radius_px.is_nan() || radius_px < KEPT_PX {

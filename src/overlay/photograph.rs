@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat2, DMat3, DVec2, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3, Vec3A};
 
 use super::canvas::Region;
 use crate::picture::Picture;
@@ -12,6 +12,8 @@ use crate::units::{Angle, SurfaceBrightness};
 
 /// A plate from the places of a picture's corners.
 pub mod corners;
+/// A picture laid on the canvas where a homography puts it: the hot loop of every photograph and animation.
+mod lay;
 /// What is done to its light.
 pub mod light;
 /// Reading photographs from the bytes of files.
@@ -26,9 +28,6 @@ pub mod stellarium;
 mod wcs;
 
 pub use read::{MOST_BYTES, PhotographError};
-
-/// Share of a photograph's shorter side over which its edge fades.
-const EDGE: f64 = 0.03;
 
 /// Where a photograph's pixels are on the sky: a tangent plane and a matrix.
 ///
@@ -146,32 +145,13 @@ impl Photograph {
         picture: &mut Picture,
         region: &Region,
         projection: &Projection,
-        colour: impl Fn([f32; 3]) -> [f32; 3],
+        colour: impl Fn(Vec3A) -> Vec3A,
     ) -> bool {
         let map = self.plate.canvas_map(projection);
         let Some((level, source)) = self.level(&map, picture) else { return false };
         let shrink = 1.0 / f64::from(1u32 << level);
         let map = DMat3::from_diagonal(DVec3::new(shrink, shrink, 1.0)) * map;
-        let (width, height) = (source.width() as f64, source.height() as f64);
-        let fading = EDGE * width.min(height);
-
-        let mut drawn = false;
-        for y in 0..picture.height() {
-            let span = region.span(y);
-            let mut place = map * DVec3::new(span.start as f64 + 0.5, y as f64 + 0.5, 1.0);
-            for pixel in &mut picture.row_mut(y)[span] {
-                let (u, v) = (place.x / place.z, place.y / place.z);
-                if place.z > 0.0 && u >= 0.0 && v >= 0.0 && u < width && v < height {
-                    let light = colour(source.sample(u as f32, v as f32));
-                    let within = u.min(v).min(width - u).min(height - v);
-                    let share = (within / fading).min(1.0) as f32;
-                    pixel.iter_mut().zip(light).for_each(|(there, light)| *there += (light - *there) * share);
-                    drawn = true;
-                }
-                place += map.x_axis;
-            }
-        }
-        drawn
+        lay::lay(picture, region, source, &map, colour)
     }
 
     /// The level whose pixels are about as large as the canvas', and its number; `None` when it is behind the observer.

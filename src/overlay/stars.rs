@@ -60,7 +60,7 @@ pub fn point(
     let sigma = sigma_px(v_mag);
     let reach = f64::from(sigma * 3.0).ceil();
     let light =
-        colour::in_palette(ink.palette, colour::of_star(colour_bv)).map(|channel| channel * peak(v_mag) * ink.share);
+        (colour::in_palette(ink.palette, colour::of_star(colour_bv).into()) * (peak(v_mag) * ink.share)).to_array();
     let (top, bottom) = ((y - reach).max(0.0) as usize, ((y + reach).max(0.0) as usize).min(picture.height()));
     for j in top..bottom {
         let span = region.span(j);

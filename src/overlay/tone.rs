@@ -13,6 +13,9 @@ use crate::sky::catalogue::{Kind, Object};
 use crate::sky::optics::Instrument;
 use crate::units::SurfaceBrightness;
 
+/// A power as a table, and a picture's light brought along it.
+pub mod curve;
+
 /// Full white at the eye where nothing was measured, cd/m2: a medium filter before the thesis' module.
 pub const ASSUMED_FULL_CD_M2: f64 = 0.3;
 /// Full white over black where nothing was measured: the thesis' module down to 0.3 cd/m2 (section 8.5).
@@ -230,70 +233,6 @@ pub fn surface_brightness(object: &Object) -> Option<SurfaceBrightness> {
     object.surface_brightness.or_else(of_disc)
 }
 
-/// A power of numbers up to 4, as a table: a few nanoseconds a pixel, right to 1e-4.
-#[derive(Debug, Clone)]
-pub struct Curve {
-    exponent: f32,
-    /// s^(exponent - 1) at 32 places of each octave from 2^-24 on.
-    gains: Vec<f32>,
-}
-
-/// An octave's places in [`Curve`], as a power of two; the bits of a float below them.
-const PLACES_BITS: u32 = 5;
-const BELOW: u32 = 23 - PLACES_BITS;
-/// 2^-24 and 2^2 as the floats' exponents.
-const LEAST_EXPONENT: i32 = -24;
-const MOST_EXPONENT: i32 = 2;
-
-impl Curve {
-    /// The curve s^exponent.
-    #[must_use]
-    pub fn new(exponent: f32) -> Curve {
-        let places = 1i32 << PLACES_BITS;
-        let gain = |i: i32| {
-            let octave = LEAST_EXPONENT + i.div_euclid(places);
-            let share = 1.0 + f64::from(i.rem_euclid(places)) / f64::from(places);
-            ((share * f64::from(octave).exp2()).powf(f64::from(exponent) - 1.0)) as f32
-        };
-        let gains = if exponent == 1.0 {
-            Vec::new()
-        } else {
-            (0..=(MOST_EXPONENT - LEAST_EXPONENT) * places).map(gain).collect()
-        };
-        Curve { exponent, gains }
-    }
-
-    /// Its exponent.
-    #[must_use]
-    pub fn exponent(&self) -> f32 {
-        self.exponent
-    }
-
-    /// A light brought along the curve by its luminance: its colour stays ("without blue shift").
-    #[must_use]
-    pub fn of(&self, light: [f32; 3]) -> [f32; 3] {
-        if self.gains.is_empty() {
-            return light;
-        }
-        let luminance = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
-        let least = (LEAST_EXPONENT as f32).exp2();
-        if luminance.is_nan() || luminance < least {
-            return [0.0; 3];
-        }
-        let bits = luminance.to_bits();
-        let first = least.to_bits() >> BELOW;
-        let place = ((bits >> BELOW) - first) as usize;
-        let gain = match self.gains.get(place..place + 2) {
-            Some(&[low, high]) => {
-                let part = (bits & ((1 << BELOW) - 1)) as f32 / (1u32 << BELOW) as f32;
-                low + part * (high - low)
-            }
-            _ => self.gains[self.gains.len() - 1],
-        };
-        light.map(|channel| channel * gain)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -392,24 +331,5 @@ mod tests {
             prop_assert!(lights.text <= lights.picture && lights.marks <= lights.text, "{:?}", lights);
             prop_assert!(lights.exponent.is_finite() && lights.exponent > 0.0);
         }
-
-        #[test]
-        fn the_curve_is_the_power_and_keeps_colours(share in 1e-6..3.9f32, exponent in 0.2..4.0f32) {
-            let curve = Curve::new(exponent);
-            let [red, green, blue] = curve.of([share, share / 2.0, share / 4.0]);
-            prop_assert!((green / red - 0.5).abs() < 1e-5 && (blue / red - 0.25).abs() < 1e-5);
-            let luminance = |light: [f32; 3]| 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
-            let (before, after) = (luminance([share, share / 2.0, share / 4.0]), luminance([red, green, blue]));
-            prop_assert!((f64::from(after) / f64::from(before).powf(f64::from(exponent)) - 1.0).abs() < 2e-3, "{} {}", before, after);
-        }
-    }
-
-    #[test]
-    fn no_light_and_no_number_are_no_light() {
-        for light in [[0.0; 3], [f32::NAN, 0.1, 0.1], [-1.0, 0.0, 0.0]] {
-            assert_eq!(Curve::new(0.5).of(light), [0.0; 3]);
-        }
-        assert_eq!(Curve::new(1.0).of([0.3, 0.2, 0.1]), [0.3, 0.2, 0.1]);
-        assert!(Curve::new(2.0).of([1e9; 3])[0].is_finite());
     }
 }
