@@ -112,7 +112,10 @@ impl Adapting {
         let state = if loss < 0.05 {
             "dark adapted*".to_owned()
         } else {
-            format!("−{loss:.1} mag*, back in {:.1} min*", self.pigment.minutes_until_back())
+            match self.pigment.minutes_until_back() {
+                soon if soon < 0.1 => format!("−{loss:.1} mag*, back at once*"),
+                minutes => format!("−{loss:.1} mag*, back in {minutes:.1} min*"),
+            }
         };
         let taken = 1.0 - 10f64.powf(-self.on_object_magnitudes(background_cd_m2) / MAGNITUDES);
         let cost = format!("lit −{:.1} mag, contrast −{:.0} % (*our own)", self.while_lit_magnitudes(), 100.0 * taken);

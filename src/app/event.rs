@@ -22,6 +22,8 @@ pub enum Event {
     Mount(Box<Belief>, Vec<Report>),
     /// The picture was handed to the projector.
     Shown(Arc<Picture>),
+    /// Whose the photographs in the picture are and on which terms they are shown, the finest first.
+    Photographs(Vec<String>),
     /// The projector could not show it: why, and what to do.
     ProjectorFailed(String),
     /// Something around the session went wrong: what, and what to do.

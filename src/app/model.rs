@@ -21,6 +21,7 @@ use crate::safety::{Acknowledgement, Clock, Fix, Rules, TurnCounter};
 use crate::sky::alignment::Pair;
 use crate::sky::catalogue::Object;
 use crate::sky::coords::{Airless, Equatorial, Horizontal, OfDate};
+use crate::sky::ephemeris::Almanac;
 use crate::sky::field::Nudge;
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::Pointing;
@@ -212,8 +213,12 @@ pub struct Model {
     pub projector: Projector,
     /// What was drawn last, while it is shown.
     pub drawn: Option<Scene>,
+    /// Where the bodies of the solar system are, remembered from picture to picture.
+    pub almanac: Almanac,
     /// The picture that is shown.
     pub picture: Option<Arc<Picture>>,
+    /// Whose the photographs in it are and on which terms they are shown, the finest first.
+    pub credits: Vec<String>,
     /// The observer's eye.
     pub eye: Adapting,
     /// The message at the top.
@@ -256,7 +261,9 @@ impl Model {
             played: Duration::ZERO,
             projector: Projector::Dark("no position yet"),
             drawn: None,
+            almanac: Almanac::default(),
             picture: None,
+            credits: Vec::new(),
             eye: Adapting::default(),
             banner: None,
             log: Log::default(),
@@ -311,9 +318,8 @@ impl Model {
     /// The name of the object in the field that would be the next target; the list is nearest first.
     #[must_use]
     pub fn next_in_field(&self) -> Option<&str> {
-        // Stars without a name are listed as stars only.
         let names: Vec<&str> =
-            self.field.iter().map(|listed| listed.name.as_str()).filter(|name| *name != "star").collect();
+            self.field.iter().filter(|listed| listed.choosable).map(|listed| listed.name.as_str()).collect();
         let current = self.target.as_ref().and_then(|target| names.iter().position(|name| *name == target.name));
         let next = current.map_or(0, |place| place + 1);
         names.get(next).or(names.first()).copied()

@@ -46,6 +46,10 @@ pub fn update(model: &mut Model, event: Event) -> Vec<Effect> {
             model.projector = Projector::Showing;
             Vec::new()
         }
+        Event::Photographs(credits) => {
+            model.credits = credits.iter().map(|credit| super::log::printable(credit)).collect();
+            Vec::new()
+        }
         Event::ProjectorFailed(why) => {
             model.projector = Projector::Failed(super::log::printable(&why));
             model.say(super::log::Weight::Warning, &why, "");

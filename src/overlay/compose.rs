@@ -54,6 +54,7 @@ pub struct Composer {
     maps: Vec<Map>,
     curve: Option<Curve>,
     lights: Option<Lights>,
+    credits: Vec<String>,
     discs: globe::Kept,
 }
 
@@ -94,6 +95,12 @@ impl Composer {
         self.lights.as_ref()
     }
 
+    /// Whose the photographs in the last picture are and on which terms they are shown, the finest first.
+    #[must_use]
+    pub fn credits(&self) -> &[String] {
+        &self.credits
+    }
+
     /// Where the bodies of the solar system are, remembered from frame to frame.
     pub fn almanac(&mut self) -> &mut Almanac {
         &mut self.almanac
@@ -105,6 +112,7 @@ impl Composer {
     pub fn compose(&mut self, scene: &Scene, field: &FieldOfView, eye: &Eye, style: &Style) -> Picture {
         let (width, height) = (field.width_px, field.height_px);
         self.lights = None;
+        self.credits.clear();
         if !field.may_draw || (style.mode == Mode::Off && scene.menu.is_none()) {
             return Picture::black(width, height);
         }
@@ -189,7 +197,8 @@ impl Composer {
         if style.uncertainty && view.beside.is_none() {
             taken.extend(self.uncertainty(&mut picture, field, style, visible));
         }
-        taken.extend(self.credits(&mut picture, &credits, field, style, visible));
+        taken.extend(self.credit(&mut picture, &credits, field, style, visible));
+        self.credits = credits;
         if style.information {
             taken.extend(self.information(&mut picture, target.as_ref(), field, eye, style, visible));
             taken.extend(self.compass(&mut picture, ink, field, style, &view, visible));
@@ -317,7 +326,7 @@ impl Composer {
 
     /// Whose the photographs are and on which terms they are shown, above the eyepiece's line, shortened until it can be seen
     /// whole; its box.
-    fn credits(
+    fn credit(
         &mut self,
         picture: &mut Picture,
         credits: &[String],

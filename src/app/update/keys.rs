@@ -270,13 +270,15 @@ fn bodies(moment: &Moment, site: Option<&Site>) -> Vec<Object> {
     Body::ALL.into_iter().map(|body| InView::of(&ephemeris, body, site).object()).collect()
 }
 
-/// Takes the next deep-sky object in the field as the target; the list is nearest first.
+/// Takes the next thing in the field that has a name as the target; the list is nearest first.
 fn next_object(model: &mut Model) {
     let Some(name) = model.next_in_field() else {
         model.say(Weight::Note, "nothing in this field has a name", "press / and type one");
         return;
     };
-    match Catalogue::embedded().search(name) {
+    let seen = model.moment().map(|moment| bodies(&moment, model.site().as_ref()));
+    let body = seen.into_iter().flatten().find(|body| body.name == name);
+    match body.map_or_else(|| Catalogue::embedded().search(name), Ok) {
         Ok(object) => {
             model.note(format!("the target is {}", object.name));
             model.target = Some(object);

@@ -7,6 +7,7 @@ use crate::app::model::{Here, Model, Projector};
 use crate::app::scene::Scene;
 use crate::overlay::style::Mode;
 use crate::sky::catalogue::Catalogue;
+use crate::sky::ephemeris::Almanac;
 use crate::sky::horizon::Horizon;
 use crate::sky::optics::Mounting;
 use crate::sky::pointing::Motion;
@@ -43,7 +44,7 @@ pub(super) fn refreshed(model: &mut Model) -> Vec<Effect> {
             if model.drawn.as_ref().is_some_and(|drawn| !scene.differs(drawn)) {
                 return Vec::new();
             }
-            model.field = listed(&scene);
+            model.field = listed(&scene, &mut model.almanac);
             model.projector = Projector::Drawing;
             model.drawn = Some(scene.clone());
             vec![Effect::Draw(Box::new(scene))]
@@ -118,9 +119,11 @@ fn darkened(model: &mut Model, why: &'static str) -> Vec<Effect> {
     if lit { vec![Effect::Dark] } else { Vec::new() }
 }
 
-fn listed(scene: &Scene) -> Vec<facts::Listed> {
+fn listed(scene: &Scene, almanac: &mut Almanac) -> Vec<facts::Listed> {
     let catalogue = Catalogue::embedded();
     let centre = crate::sky::astrometry::j2000(&scene.pointing.position, &scene.moment);
-    let found = catalogue.within(&centre, scene.instrument.true_field() / 2.0, FAINTEST);
-    facts::listed(&found, catalogue)
+    let radius = scene.instrument.true_field() / 2.0;
+    let mut found = catalogue.within(&centre, radius, FAINTEST);
+    found.bodies = almanac.within(&scene.moment, scene.site.as_ref(), &centre, radius);
+    facts::listed(&found, &centre, catalogue)
 }

@@ -23,6 +23,7 @@ use crate::safety::{Rules, TurnCounter};
 use crate::sky::astrometry::{Astrometry, apparent};
 use crate::sky::catalogue::{Band, Kind, Object};
 use crate::sky::coords::{Equatorial, J2000, OfDate};
+use crate::sky::ephemeris::{Body, Ephemeris};
 use crate::sky::optics::Instrument;
 use crate::sky::pointing::Motion;
 use crate::sky::site::Site;
@@ -541,6 +542,22 @@ fn an_animation_plays_for_its_object_stands_in_a_slew_and_is_missed_aloud() {
 
 fn here_j2000() -> Equatorial<J2000> {
     Equatorial::new(Angle::degrees(11.0), Angle::degrees(41.4))
+}
+
+#[test]
+fn planets_are_listed_with_their_moons_and_tab_takes_the_planet() {
+    let mut model = Model::new(opening());
+    let _ = update(&mut model, clocks(EVENING, 1.0));
+    let moment = Moment::at(Utc::from_rfc3339(EVENING).unwrap());
+    let saturn = Ephemeris::at(&moment).unwrap().place(Body::Saturn).apparent;
+    let _ = update(&mut model, told(believed(saturn, Motion::Tracking, 1.0)));
+    let listed = |name: &str| model.field.iter().find(|listed| listed.name == name);
+    assert!(listed("Saturn").is_some_and(|saturn| saturn.what == "planet" && saturn.choosable), "{:?}", model.field);
+    // Titan's orbit is 20 radii of Saturn.
+    let titan = listed("Titan").unwrap();
+    assert!(titan.what == "moon" && titan.separation.to_arcseconds() < 220.0 && !titan.choosable, "{titan:?}");
+    let _ = update(&mut model, Event::Key(Key::Tab));
+    assert_eq!(model.target.map(|target| target.name).as_deref(), Some("Saturn"));
 }
 
 #[test]

@@ -173,6 +173,16 @@ impl Projection {
         pipeline::frame(&scene.pointing, &scene.moment, &view, &mut self.composer).picture
     }
 
+    /// Whose the photographs in the last picture are and on which terms they are shown, the finest first.
+    pub(super) fn credits(&self) -> &[String] {
+        self.composer.credits()
+    }
+
+    /// A sentence for each photograph that could not be read since this was last asked.
+    pub(super) fn complaints(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.album.notes)
+    }
+
     /// The photographs of a scene's field; none while nothing is drawn, so that no file is read on the way to an object.
     fn photographs(&mut self, scene: &Scene, style: &Style) -> Vec<Photograph> {
         if !scene.photographs || style.mode == Mode::Off || scene.animation.is_some() || self.album.is_empty() {

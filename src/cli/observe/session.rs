@@ -76,6 +76,8 @@ struct Session {
     /// Why the recording has ended, when it has.
     recording: Option<Complaint>,
     watchdog: Watchdog,
+    /// Whose the photographs in the last picture are.
+    credits: Vec<String>,
     /// When the key of the hand controller was heard whose doing is drawn now.
     key_at: Option<Duration>,
     screen: Option<(Taken, Depth)>,
@@ -204,6 +206,7 @@ impl Session {
             handbox: handbox.map_err(Failure::failed)?,
             recording,
             watchdog: Watchdog::new(),
+            credits: Vec::new(),
             key_at: None,
             screen: None,
             inbox,
@@ -409,6 +412,13 @@ impl Session {
         };
         let picture = Arc::new(self.projection.compose(scene));
         self.projection.show(&picture, origin, now);
+        if self.projection.credits() != self.credits {
+            self.credits = self.projection.credits().to_vec();
+            self.happened(Event::Photographs(self.credits.clone()));
+        }
+        for complaint in self.projection.complaints() {
+            self.notice(complaint);
+        }
     }
 
     /// What the projector says.

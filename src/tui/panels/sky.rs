@@ -38,6 +38,13 @@ fn draw_texts(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
             }
         }
     }
+    let shown = model.picture.as_ref().map_or(&[][..], |_| &model.credits);
+    lines.extend(
+        credits(shown, width.saturating_sub(14))
+            .into_iter()
+            .enumerate()
+            .map(|(line, words)| fact(theme, if line == 0 { "photograph" } else { "" }, &words)),
+    );
     lines.push(Line::default());
     lines.push(heading(theme, "in the field"));
     let room = usize::from(area.height).saturating_sub(lines.len());
@@ -59,6 +66,26 @@ fn draw_texts(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
         ]));
     }
     frame.render_widget(Paragraph::new(lines).style(theme.text(Level::Normal)), area);
+}
+
+/// Whose the photographs are and on which terms they are shown: the finest's words in lines of so many columns, and how many
+/// more there are.
+fn credits(credits: &[String], columns: usize) -> Vec<String> {
+    let Some((finest, others)) = credits.split_first() else { return Vec::new() };
+    let mut lines = vec![String::new()];
+    for word in finest.split_whitespace() {
+        match lines.last_mut() {
+            Some(last) if last.is_empty() || last.chars().count() + 1 + word.chars().count() <= columns => {
+                last.push_str(if last.is_empty() { "" } else { " " });
+                last.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    if !others.is_empty() {
+        lines.push(format!("and {} more", others.len()));
+    }
+    lines.iter().map(|line| cut(line, columns)).collect()
 }
 
 fn draw_picture(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
@@ -109,4 +136,16 @@ fn draw_below(model: &Model, theme: &Theme, frame: &mut Frame<'_>, area: Rect) {
     ];
     lines.extend(model.eye.words(background).map(|words| Line::styled(format!(" {words}"), theme.text(Level::Dim))));
     frame.render_widget(Paragraph::new(lines).style(theme.text(Level::Normal)), area);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_photographs_terms_are_told_whole_in_lines_that_fit() {
+        let lines = credits(&["A. Observer and B. Observer (CC-BY-SA-4.0)".into(), "C".into()], 18);
+        assert_eq!(lines, ["A. Observer and B.", "Observer", "(CC-BY-SA-4.0)", "and 1 more"]);
+        assert!(credits(&[], 18).is_empty());
+    }
 }
