@@ -2,12 +2,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::cell::Cell;
+
 use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use scotopic::numerics::streams::Stream;
 use scotopic::physics::dust::camera::{Camera, Lens};
 use scotopic::physics::dust::develop::{pixels, white_of};
 use scotopic::physics::dust::drawing::{Drawing, Light};
 use scotopic::physics::dust::march::Emission;
+use scotopic::physics::dust::multiple::{Settings, gather};
 use scotopic::physics::dust::phase::HenyeyGreenstein;
 use scotopic::physics::dust::render::{Rendered, View, Wish};
 use scotopic::physics::dust::scene::{Dust, Scene, Star};
@@ -247,55 +252,133 @@ fn the_box_may_end_anywhere_in_a_pixel() {
     }
 }
 
-/// A picture of a cloud drawn by chance: how many pixels see light, in how many the error is larger than believed, and the largest share of
-/// the believed error that it is.
-fn believed(seed: u64) -> (usize, usize, f64) {
-    let mut stream = Stream::seeded(seed);
-    let mut place = |reach: f64| DVec3::from_array([0; 3].map(|_| (2.0 * stream.uniform() - 1.0) * reach));
-    let (star, other, eye) = (place(0.9), place(2.0), place(1.0).normalize() * 3.0);
-    let side = 4 + (place(4.0).x + 4.0) as usize;
-    let extinction = 10f64.powf(0.6 * place(1.0).x);
-    let volume = if place(1.0).x < 0.0 {
-        uneven(side)
-    } else {
-        let density = (0..side.pow(3)).map(|_| (place(2.0).x.max(0.0)) as f32).collect();
-        Volume::new([side; 3], DVec3::splat(2.0), density).unwrap()
-    };
-    let scene = scene(&[extinction], 0.6, 0.6, &[star, other]);
-    let view = match seed % 3 {
-        0 => view(DVec3::Z * 4.0, DVec3::ZERO, Lens::Orthographic { width: 2.2 }, 8, 8),
-        1 => view(eye, DVec3::ZERO, Lens::Perspective { field: 0.7 }, 8, 8),
-        _ => view(0.2 * eye, star, Lens::Domemaster { field: 3.3 }, 8, 8),
-    };
-    let wish = Wish { tolerance: 4e-2, ..WISH };
-    let quick = draw(&volume, &scene, &view, &wish);
-    let truth = Drawing::new(&volume, &scene, Light::Single, None)
-        .draw(&view, &Wish { tolerance: 1e-2, ..wish }, &mut |_| ())
-        .radiance
-        .remove(0);
-    let mean = truth.iter().sum::<f32>() / truth.len() as f32;
-    let shares: Vec<f64> = (0..truth.len())
-        .filter(|i| truth[*i] > 0.0)
-        .map(|i| {
-            let error = (quick.radiance[0][i] - truth[i]).abs() / truth[i].max(0.01 * mean);
-            f64::from(error / quick.believed[i].max(1e-5))
+/// A picture of a cloud drawn by chance.
+#[derive(Debug, Clone)]
+struct Chance {
+    side: usize,
+    /// Density from voxel to voxel by chance, of a seed; else [`uneven`].
+    noise: Option<u64>,
+    extinction: f64,
+    g: f64,
+    star: [f64; 3],
+    other: [f64; 3],
+    eye: [f64; 3],
+    lens: u8,
+}
+
+fn chances() -> impl Strategy<Value = Chance> {
+    let place = |reach: f64| proptest::array::uniform3(-reach..reach);
+    let dust = (4usize..9, proptest::option::of(any::<u64>()), (-0.6..0.6f64), -0.7..0.7f64);
+    (dust, place(0.9), place(2.0), place(1.0), 0u8..3)
+        .prop_filter("an eye at the centre sees nothing", |(_, _, _, eye, _)| DVec3::from_array(*eye).length() > 0.1)
+        .prop_map(|((side, noise, power, g), star, other, eye, lens)| Chance {
+            side,
+            noise,
+            extinction: 10f64.powf(power),
+            g,
+            star,
+            other,
+            eye,
+            lens,
         })
-        .collect();
-    let above = shares.iter().filter(|share| **share > 1.0).count();
-    (shares.len(), above, shares.into_iter().fold(0.0, f64::max))
+}
+
+impl Chance {
+    /// Of each pixel that sees light, the error as a share of what is believed.
+    fn shares(&self) -> Vec<f64> {
+        let volume = match self.noise {
+            None => uneven(self.side),
+            Some(seed) => {
+                let mut stream = Stream::seeded(seed);
+                let density = (0..self.side.pow(3)).map(|_| (4.0 * stream.uniform() - 2.0).max(0.0) as f32).collect();
+                Volume::new([self.side; 3], DVec3::splat(2.0), density).unwrap()
+            }
+        };
+        let [star, other, eye] = [self.star, self.other, self.eye].map(DVec3::from_array);
+        let scene = scene(&[self.extinction], 0.6, self.g, &[star, other]);
+        let eye = eye.normalize() * 3.0;
+        let view = match self.lens {
+            0 => view(DVec3::Z * 4.0, DVec3::ZERO, Lens::Orthographic { width: 2.2 }, 7, 7),
+            1 => view(eye, DVec3::ZERO, Lens::Perspective { field: 0.7 }, 7, 7),
+            _ => view(0.2 * eye, star, Lens::Domemaster { field: 3.3 }, 7, 7),
+        };
+        let wish = Wish { tolerance: 4e-2, ..WISH };
+        let quick = draw(&volume, &scene, &view, &wish);
+        let finer = Wish { tolerance: 1e-2, ..wish };
+        let truth = Drawing::new(&volume, &scene, Light::Single, None).draw(&view, &finer, &mut |_| ());
+        let truth = &truth.radiance[0];
+        let mean = truth.iter().sum::<f32>() / truth.len() as f32;
+        (0..truth.len())
+            .filter(|i| truth[*i] > 0.0)
+            .map(|i| {
+                let error = (quick.radiance[0][i] - truth[i]).abs() / truth[i].max(0.01 * mean);
+                f64::from(error / quick.believed[i].max(1e-5))
+            })
+            .collect()
+    }
 }
 
 #[test]
 fn a_pixel_is_as_right_as_it_is_believed_to_be() {
-    let all: Vec<(usize, usize, f64)> = (0..12).map(believed).collect();
-    let (lit, above) = all.iter().fold((0, 0), |(lit, above), one| (lit + one.0, above + one.1));
-    let most = all.iter().map(|one| one.2).fold(0.0, f64::max);
-    assert!(lit > 400, "{lit} pixels see light");
-    // In the rest, agreement was by chance.
-    assert!((above as f64) < 0.005 * lit as f64, "{above} of {lit} are further off than believed");
-    assert!(most < 4.0, "a pixel is off by {most} times what is believed");
+    // Agreement may be by chance, in one pixel of a thousand or so: the same scenes on every machine, so that the test has no luck.
+    let config = ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let (lit, above, most) = (Cell::new(0), Cell::new(0), Cell::new(0.0f64));
+    let each = runner.run(&chances(), |chance| {
+        let shares = chance.shares();
+        let here = shares.iter().filter(|share| **share > 1.0).count();
+        let worst = shares.iter().copied().fold(0.0, f64::max);
+        lit.set(lit.get() + shares.len());
+        above.set(above.get() + here);
+        most.set(most.get().max(worst));
+        prop_assert!(here <= 2, "{here} of {} pixels are further off than believed", shares.len());
+        prop_assert!(worst < 4.0, "a pixel is off by {worst} times what is believed");
+        Ok(())
+    });
+    each.unwrap();
+    assert!(lit.get() > 200, "{} pixels see light", lit.get());
+    assert!((above.get() as f64) < 0.005 * lit.get() as f64, "{} of {}", above.get(), lit.get());
     // And what is believed is no mere caution.
-    assert!(most > 0.5);
+    assert!(most.get() > 0.5, "at most {} of what is believed", most.get());
+}
+
+#[test]
+fn the_table_depends_on_the_grid_and_never_becomes_the_truth() {
+    let thesis = Parameters { deepest: 2.1, depths: 22, directions: 36, ..Parameters::thesis().unwrap() };
+    let accuracy = Accuracy { relative: Some(0.03), photons: None, most_events: 20_000_000 };
+    let table = shared::make(&thesis, &accuracy, 1, &mut |_| ()).unwrap().table;
+    // One smooth cloud, extinction 8 in its middle, with a hole round the star.
+    let cloud = |side: usize| {
+        let at = |i: usize| (i as f64 + 0.5) / side as f64 * 2.0 - 1.0;
+        let density = (0..side.pow(3)).map(|i| {
+            let r = DVec3::new(at(i % side), at(i / side % side), at(i / side / side)).length();
+            ((-(r / 0.5).powi(2)).exp() * ((r - 0.2) / 0.2).clamp(0.0, 1.0)) as f32
+        });
+        Volume::new([side; 3], DVec3::splat(2.0), density.collect()).unwrap()
+    };
+    let scene = scene(&[8.0], 0.6, 0.6, &[DVec3::ZERO]);
+    let wish = Wish { tolerance: 3e-2, ..WISH };
+    let totals = [8, 16, 32].map(|side| {
+        let volume = cloud(side);
+        let settings = Settings { flights: 60_000, ..Settings::fitting(&volume) };
+        let field = Box::new(gather(&volume, &scene, &settings).unwrap());
+        let lights = [Light::Single, Light::Table(Box::new(table.clone()), Literal::default()), Light::Multiple(field)];
+        lights.map(|light| {
+            let mut drawing = Drawing::new(&volume, &scene, light, None);
+            drawing.prepare(&from_above(24, 24), &wish, &mut |_| ());
+            let drawn = drawing.draw(&from_above(24, 24), &wish, &mut |_| ());
+            drawn.radiance[0].iter().map(|value| f64::from(*value)).sum::<f64>()
+        })
+    });
+    for pair in totals.windows(2) {
+        let grown = |model: usize| pair[1][model] / pair[0][model] - 1.0;
+        // Twice as fine: the others stay, the table grows (by 23 and 11 % in `report nebula`).
+        assert!(grown(0).abs() < 0.05 && grown(2).abs() < 0.05, "{totals:?}");
+        assert!(grown(1) > 0.06 && grown(1) > 2.0 * grown(2).abs(), "{totals:?}");
+    }
+    for [single, table, multiple] in totals {
+        assert!(table < 0.95 * single && table < 0.6 * multiple, "{totals:?}");
+    }
 }
 
 #[test]

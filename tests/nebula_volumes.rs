@@ -385,3 +385,57 @@ fn gas_that_glows_is_made_and_rendered() {
     assert!(code == Some(2) && said.contains("-1"), "{said}");
     assert_eq!(refused(&["generate", "--emission-radius", "1", "--out", "w.npy"], &folder).0, Some(2));
 }
+
+#[test]
+fn voxels_of_a_fits_file_that_are_no_cubes_are_rendered_as_long_as_they_are() {
+    let folder = folder("nebula-slabs");
+    // Even dust in 5 x 4 x 3 voxels of 0.4 x 0.2 x 0.1: a box of 2 x 0.8 x 0.3.
+    let mut bytes = Vec::new();
+    scotopic::picture::fits::cube::write(&mut bytes, [5, 4, 3], [0.4, 0.2, 0.1], &[1.0; 60]).unwrap();
+    std::fs::write(folder.join("slabs.fits"), bytes).unwrap();
+    for (eye, up, depth) in [("5,0,0", "0,1,0", 2.0f64), ("0,5,0", "0,0,1", 0.8), ("0,0,5", "0,1,0", 0.3)] {
+        let view = [
+            "--view",
+            "orthographic",
+            "--eye",
+            eye,
+            "--up",
+            up,
+            "--width",
+            "0.1",
+            "--size",
+            "2x1",
+            "--extinction",
+            "1.5",
+        ];
+        let more = [
+            "--star=0,0,9",
+            "--model",
+            "single",
+            "--tolerance",
+            "0.05",
+            "--quiet",
+            "--out",
+            "p.npy",
+            "--through",
+            "t.npy",
+        ];
+        json(&[&["render", "slabs.fits"][..], &view, &more].concat(), &folder);
+        let bytes = std::fs::read(folder.join("t.npy")).unwrap();
+        let through = scotopic::picture::npy::read(&mut bytes.as_slice(), bytes.len() as u64).unwrap().values;
+        assert!(
+            through.iter().all(|share| (f64::from(*share) - (-1.5 * depth).exp()).abs() < 1e-5),
+            "{eye}: {through:?}"
+        );
+    }
+}
+
+#[test]
+fn a_picture_that_no_memory_holds_is_refused_before_anything_is_done() {
+    let folder = folder("nebula-large");
+    json(&["generate", "--size", "4", "--out", "v.npy"], &folder);
+    let five = ["render", "v.npy", "--size", "8192", "--extinction", "1,2,3,4,5", "--out", "p.npy"];
+    let (code, said) = refused(&five, &folder);
+    assert!(code == Some(2) && said.contains("8192 x 8192 pixels in 5 bands") && said.contains("GiB"), "{said}");
+    assert!(refused(&["render", "v.npy", "--size", "8193", "--out", "p.npy"], &folder).1.contains("8193"));
+}

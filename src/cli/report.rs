@@ -303,6 +303,7 @@ fn extremes(json: bool) -> Result<(), Failure> {
     extremes.extend(skylight::extremes());
     extremes.extend(disc::extremes());
     extremes.extend(nebula::extremes::extremes());
+    extremes.extend(nebula::rendered::extremes());
     extremes.extend(nebula::flying::extremes());
     extremes.extend(eye::extremes());
     extremes.extend(registration::extremes());

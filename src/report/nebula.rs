@@ -23,6 +23,8 @@ pub mod grid;
 pub mod known;
 /// A cloud as large as the thesis'.
 pub mod large;
+/// The accurate renderer under extreme scenes.
+pub mod rendered;
 
 use known::{Compared, Known, StudyError, refused, view};
 

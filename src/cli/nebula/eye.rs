@@ -8,7 +8,7 @@ use super::triple::Place;
 use crate::cli::Failure;
 use crate::cli::sun::picture::Size;
 use crate::physics::dust::camera::{Camera, Lens};
-use crate::physics::dust::render::View;
+use crate::physics::dust::render::{MOST_BYTES, View};
 use crate::physics::dust::volume::Volume;
 
 /// How directions are laid on the picture.
@@ -49,6 +49,25 @@ pub struct EyeArguments {
     /// What is nearer to the eye than this is not seen [default: 0]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub near: Option<f64>,
+}
+
+/// Refuses a picture that takes more memory than any should.
+///
+/// # Errors
+/// Its size, what it takes, and what to do.
+pub fn bounded(view: &View, bands: usize) -> Result<(), Failure> {
+    let bytes = view.bytes(bands);
+    if bytes <= MOST_BYTES {
+        return Ok(());
+    }
+    let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+    Err(Failure::asked(format!(
+        "{} x {} pixels in {bands} bands take {:.1} GiB of memory, and {:.0} GiB are the most: ask for fewer pixels, or for some bands at a time",
+        view.width,
+        view.height,
+        gib(bytes),
+        gib(MOST_BYTES)
+    )))
 }
 
 impl EyeArguments {

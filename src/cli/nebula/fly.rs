@@ -11,6 +11,7 @@ use self::painter::{Painter, Ready, Subject};
 use self::way::Way;
 use super::cache;
 use super::developing::{Darkroom, DevelopArguments, Negative};
+use super::eye::bounded;
 use super::files::{self, VolumeArguments};
 use super::lighting::{Glow, LightingArguments, Model};
 use super::out::{Format, Look};
@@ -292,6 +293,7 @@ fn make(arguments: &Arguments, flight: &Flight, folder: &Folder, todo: &[usize])
     };
     let cache = if arguments.no_cache { None } else { arguments.cache.clone().or_else(|| cache::folder("light")) };
     let first = View { camera: camera(0)?, width, height, near: 0.0 };
+    bounded(&first, flight.scene.bands())?;
     let mut bar = Bar::new("frames");
     let Ready { mut painter, cached } = Painter::ready(&subject, &first, cache.as_deref(), arguments.quiet)?;
     // One white for all frames, the same on every machine.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use serde_json::json;
 
-use super::eye::EyeArguments;
+use super::eye::{EyeArguments, bounded};
 use super::files::{self, VolumeArguments};
 use super::lighting::{self, Glow, LightingArguments, Model};
 use super::out;
@@ -102,6 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let edge = arguments.volume.edge.or(said.edge.map(Edges::Longest));
     let volume = files::open(&arguments.volume.volume, edge)?;
     let view = arguments.eye.view(&said, &volume)?;
+    bounded(&view, scene.bands())?;
     let glow = arguments.lighting.glow(&volume, scene.bands())?;
     let emission = glow.as_ref().map(Glow::emission);
 

@@ -23,6 +23,8 @@ use plan::Plan;
 
 /// Longest side of a picture, pixels.
 pub const LONGEST_SIDE: usize = 8192;
+/// Larger pictures are for nobody's memory: see [`View::bytes`].
+pub const MOST_BYTES: u64 = 4 << 30;
 /// Rows that are worked on at one time.
 const STRIP: usize = 32;
 
@@ -40,6 +42,14 @@ pub struct View {
 }
 
 impl View {
+    /// Memory that its picture takes in so many bands until it is written: planes of light, of what comes through and of believed errors, and a
+    /// plane of light twice more on its way into a file. Strips of rays add nothing that grows with the picture.
+    #[must_use]
+    pub fn bytes(&self, bands: usize) -> u64 {
+        let pixels = self.width as u64 * self.height as u64;
+        pixels.saturating_mul(4 * (4 * bands as u64 + 1))
+    }
+
     /// The ray of a place in the picture. Outside a dome's circle, that of its edge: so pixels on the edge are averages of what is inside.
     fn ray(&self, x: f64, y: f64) -> Option<Ray> {
         self.camera.ray(x, y, self.width, self.height).or_else(|| {
