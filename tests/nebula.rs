@@ -110,6 +110,15 @@ fn the_pixel_of_a_star_in_thin_dust_has_the_average_that_an_integral_gives() {
 }
 
 #[test]
+fn pixels_beside_one_whose_middle_goes_through_a_star_are_believed_by_their_own_rays() {
+    // An odd number of pixels, the star in the very middle: that ray sees any amount of light.
+    let wish = Wish { tolerance: 1e-2, ..WISH };
+    let got = draw(&uneven(8), &scene(&[3.0], 0.6, 0.6, &[DVec3::ZERO]), &from_above(9, 9), &wish);
+    assert!(got.explained.worst < 0.02 && got.explained.given_up == 0, "{:?}", got.explained);
+    assert!(got.explained.tally.rays < 400 * 81, "{:?}", got.explained.tally);
+}
+
+#[test]
 fn what_comes_through_even_dust_is_beer_and_lamberts() {
     let scene = scene(&[0.5, 3.0, 400.0], 0.0, 0.0, &[DVec3::ZERO]);
     let got = draw(&even(5), &scene, &from_above(3, 3), &WISH);

@@ -19,6 +19,8 @@ const STEPS: f64 = 0.19;
 const SLOWEST: f64 = 0.1;
 /// A pixel whose curvature is more than so many tolerances has 16 rays at once.
 const STRONGLY: f64 = 3.0;
+/// Beside a pixel with a star the neighbours' curvature is believed up to this many times what the rays within the pixel differ by.
+const AT_MOST: f64 = 10.0;
 /// Nearer to a star's image than this, pixels, the neighbours are not asked whether one ray is enough.
 const NEAR_STAR: f64 = 3.0;
 /// Pixels beyond the picture's edges whose middles are known too.
@@ -218,15 +220,22 @@ impl<'a> Sampler<'a> {
             corrected.error = error;
             return (corrected, Kind::OneRay);
         }
-        self.many(&corrected, &bent, star || may_hide, x, y)
+        self.many(&corrected, &bent, (star, may_hide), x, y)
     }
 
     /// Parts of the pixel, the worst of which is quartered until the sum is good enough.
-    fn many(&self, middle: &Pixel, bent: &[f64; MOST_BANDS], unknown: bool, x: usize, y: usize) -> (Pixel, Kind) {
+    fn many(
+        &self,
+        middle: &Pixel,
+        bent: &[f64; MOST_BANDS],
+        (near_star, may_hide): (bool, bool),
+        x: usize,
+        y: usize,
+    ) -> (Pixel, Kind) {
         let mut tally = middle.tally;
         let mut shapes = Vec::new();
         let parts = self.along_faces(x as f64, y as f64);
-        let unknown = unknown || parts.len() > 1;
+        let unknown = near_star || may_hide || parts.len() > 1;
         let mut starred = false;
         for part in parts {
             starred |= self.around_stars(part, 0, &mut shapes);
@@ -249,7 +258,12 @@ impl<'a> Sampler<'a> {
             if !starred {
                 for patch in &mut patches {
                     let Shape::Square { width, height, .. } = patch.shape else { continue };
-                    patch.error = bent.map(|bent| bent * width * height);
+                    // A neighbour's middle may go through a star, with any light: within this pixel the light bends by no more than what its own
+                    // rays differ by, many times.
+                    patch.error = std::array::from_fn(|band| {
+                        let most = if near_star { AT_MOST * patch.spread[band] } else { f64::INFINITY };
+                        (bent[band] * width * height).min(most)
+                    });
                 }
             }
             patches = patches.iter().flat_map(|patch| self.quarter(patch, &mut tally)).collect();
