@@ -18,6 +18,8 @@ pub mod frame;
 pub mod limb;
 /// Small systems of linear equations.
 mod linear;
+/// Where discs lie.
+mod map;
 /// Both photographs together.
 pub mod pair;
 /// The drive's periodic error from the observer's nudges.
@@ -26,6 +28,8 @@ pub mod periodic;
 mod profile;
 /// The first guess of the circle.
 mod search;
+/// A step towards laying one face on the other.
+mod step;
 /// Maria and craters of one photograph on the other.
 mod surface;
 /// The Moon's face as a square of relative brightness.

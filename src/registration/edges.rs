@@ -9,6 +9,8 @@ pub(super) struct Edge {
     pub(super) y: f64,
     /// Unit vector to the bright side.
     pub(super) inward: (f64, f64),
+    /// Change a pixel.
+    pub(super) steepness: f64,
 }
 
 /// Canny's ridge of gradients (1986, IEEE PAMI 8, 679) where they are steeper than `least` a pixel, without hysteresis: what
@@ -47,6 +49,7 @@ pub(super) fn edges(frame: &Frame, least: f64) -> Vec<Edge> {
                 x: x as f64 + 0.5 + off * length * inward.0,
                 y: y as f64 + 0.5 + off * length * inward.1,
                 inward,
+                steepness: here,
             });
         }
     }

@@ -62,14 +62,20 @@ impl<const N: usize> Normal<N> {
         }
     }
 
-    /// A cell of two faces: `A += sym(g h')`, `b += r / 2`, of which noise in one face alone has no mean.
-    pub(super) fn cross(&mut self, one: &[f64; N], other: &[f64; N], right: impl Fn(usize) -> f64) {
+    /// A cell of two faces: `A += w sym(g h')`, `b += w r / 2`, of which noise in one face alone has no mean.
+    pub(super) fn cross(&mut self, one: &[f64; N], other: &[f64; N], right: impl Fn(usize) -> f64, weight: f64) {
         for i in 0..N {
-            self.right[i] += 0.5 * right(i);
+            self.right[i] += 0.5 * weight * right(i);
             for j in 0..N {
-                self.matrix[i * N + j] += 0.5 * (one[i] * other[j] + one[j] * other[i]);
+                self.matrix[i * N + j] += 0.5 * weight * (one[i] * other[j] + one[j] * other[i]);
             }
         }
+    }
+
+    /// Adds the sums of another part.
+    pub(super) fn join(&mut self, part: &Normal<N>) {
+        self.matrix.iter_mut().zip(&part.matrix).for_each(|(sum, part)| *sum += part);
+        self.right.iter_mut().zip(&part.right).for_each(|(sum, part)| *sum += part);
     }
 
     /// The sums without a part of them.

@@ -89,7 +89,7 @@ impl Pair {
         let limb_scale = Measured { value: ratio, error: ratio * seen.radius_error().hypot(drawn.radius_error()) };
         let surface_scale = surface.map(|laid| Measured {
             value: ratio * (1.0 + laid.stretch),
-            error: ratio * (1.0 + laid.stretch) * laid.error,
+            error: ratio * (1.0 + laid.stretch) * laid.covariance[0][0].sqrt(),
         });
         let contradiction =
             surface_scale.map(|other| (other.value - limb_scale.value).abs() / other.error.hypot(limb_scale.error));
@@ -101,7 +101,7 @@ impl Pair {
         let rotation_deg = match surface {
             Some(laid) => Some(Measured {
                 value: if laid.mirrored { laid.turn } else { -laid.turn }.to_degrees(),
-                error: laid.turn_error.to_degrees(),
+                error: laid.covariance[1][1].sqrt().to_degrees(),
             }),
             None => seen.bright.zip(drawn.bright).map(|(seen, drawn)| Measured {
                 value: (seen - drawn).to_degrees(),
@@ -145,7 +145,7 @@ fn offset(seen: &Limb, drawn: &Limb, surface: Option<Laid>) -> [Measured; 2] {
             let (x, y) = drawn.place(shift.0, shift.1);
             let stretch = drawn.radius / seen.radius * (1.0 + laid.stretch);
             let error = |k| {
-                let carried = drawn.radius * laid.shift_error;
+                let carried = drawn.radius * laid.covariance[2][2].max(laid.covariance[3][3]).sqrt();
                 // An error of the seen middle moves the drawn one with it, but for the scale and the turn.
                 let (sin, cos) = laid.turn.sin_cos();
                 let loose = (stretch * cos - 1.0).powi(2) + (stretch * sin).powi(2);

@@ -1,10 +1,11 @@
 //! Maria and craters of one photograph laid on the other: turn and parity by correlation round the disc, then all four numbers
-//! by least squares (Lucas and Kanade 1981), and their errors from how well small tiles agree with each other.
+//! by matching the faces, coarse before fine.
 
 use super::frame::Frame;
 use super::limb::Limb;
-use super::linear::Normal;
-use super::texture::{Placing, SIDE, Texture, alone, disc, sampled, together};
+use super::map::{Map, Placing};
+use super::step::Step;
+use super::texture::{Source, Texture};
 
 /// How the second face lies on the first: `u' = (1 + stretch) Rot(turn) u + shift`, in half widths of the disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,16 +15,14 @@ pub(super) struct Laid {
     /// Turned from x to y, radians.
     pub(super) turn: f64,
     pub(super) shift: (f64, f64),
-    /// Standard deviations of stretch, turn and shift.
-    pub(super) error: f64,
-    pub(super) turn_error: f64,
-    pub(super) shift_error: f64,
+    /// Covariance of stretch, turn and shift.
+    pub(super) covariance: [[f64; 4]; 4],
     /// Whether left and right were exchanged.
     pub(super) mirrored: bool,
-    /// Correlation of the two faces once laid on each other, 0 to 1.
-    pub(super) alike: f64,
 }
 
+/// Cells a side of the disc's square, from coarse to fine.
+const SIDES: [usize; 3] = [96, 192, 384];
 /// Angles tried in the search.
 const ANGLES: usize = 360;
 /// Rings of the search.
@@ -31,40 +30,40 @@ const RINGS: usize = 14;
 /// Two faces are the same if they correlate so well, and the better parity must lead by as much as [`LEAD`].
 const ALIKE: f64 = 0.25;
 const LEAD: f64 = 0.06;
-/// Cells of a tile's side.
-const TILE: usize = 24;
-/// Least tiles that speak of an error.
-const LEAST_TILES: usize = 8;
 
 /// Lays the second photograph's face on the first's; `None` where they share too little.
 pub(super) fn laid(first: (&Frame, &Limb), second: (&Frame, &Limb)) -> Option<Laid> {
-    let seen = sampled(first.0, &Placing::of(first.1, false));
-    let mut tried: Vec<Laid> = Vec::new();
+    let faces = |side| (Source::of(first.0, first.1, side), Source::of(second.0, second.1, side));
+    let seen = Placing::of(first.1, false);
+    let [coarse, middle, fine] = SIDES;
+    let (coarse, middle) = (faces(coarse), faces(middle));
+    let mut tried: Vec<(f64, bool, Map)> = Vec::new();
     for mirrored in [false, true] {
-        tried.extend(one_parity(&seen, second.0, &Placing::of(second.1, mirrored), mirrored));
+        let placings = (seen, Placing::of(second.1, mirrored));
+        tried.extend(placed(&coarse, &middle, &placings).map(|(alike, map)| (alike, mirrored, map)));
     }
-    tried.sort_by(|a, b| b.alike.total_cmp(&a.alike));
-    let best = *tried.first()?;
-    let lead = best.alike - tried.get(1).map_or(0.0, |next| next.alike);
-    (best.alike > ALIKE && lead > LEAD).then_some(best)
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (alike, mirrored, map) = *tried.first()?;
+    if alike < ALIKE || alike - tried.get(1).map_or(0.0, |next| next.0) < LEAD {
+        return None;
+    }
+    let placings = (seen, Placing::of(second.1, mirrored));
+    let (before, step) = matched(&faces(fine), &placings, map, 1, 6)?;
+    let (map, covariance) = step.settled(&before)?;
+    Some(Laid { stretch: map.stretch(), turn: map.b.atan2(map.a), shift: (map.x, map.y), covariance, mirrored })
 }
 
-/// Times that the second face is taken anew through the map found so far. Only where both are cut out alike do their borders
-/// not pull.
-const ANEW: usize = 3;
+/// Both photographs at one fineness.
+type Faces<'a> = (Source<'a>, Source<'a>);
 
-fn one_parity(seen: &[Option<f32>], frame: &Frame, placing: &Placing, mirrored: bool) -> Option<Laid> {
-    let (one, other) = (alone(seen), alone(&sampled(frame, placing)));
-    let turn = searched(&one.softened(3), &other.softened(3))?;
-    let mut map = Map { a: turn.cos(), b: turn.sin(), x: 0.0, y: 0.0 };
-    map = refined(&one, &other, map, &[(8, 12), (4, 10), (2, 6)])?;
-    for _ in 0..ANEW {
-        let (one, other) = together(seen, &sampled(frame, &map.over(placing)));
-        let more = refined(&one, &other, Map::SAME, &[(2, 3), (1, 4)])?;
-        map = map.after(&more);
-    }
-    let (one, other) = together(seen, &sampled(frame, &map.over(placing)));
-    settled(&one.softened(1), &other.softened(1), &map, mirrored)
+/// How one parity lies, to a part of a coarse cell, and how alike the faces are then.
+fn placed(coarse: &Faces, middle: &Faces, placings: &(Placing, Placing)) -> Option<(f64, Map)> {
+    let alone = |source: &Source, placing| Texture::alone(&source.cut(placing)).softened(1);
+    let turn = searched(&alone(&coarse.0, &placings.0), &alone(&coarse.1, &placings.1))?;
+    let (map, _) = matched(coarse, placings, Map::turned(turn), 2, 12)?;
+    let (map, _) = matched(coarse, placings, map, 1, 8)?;
+    let (map, step) = matched(middle, placings, map, 1, 6)?;
+    Some((step.alike(), map))
 }
 
 /// The turn at which the rings of two faces correlate best.
@@ -75,7 +74,7 @@ fn searched(first: &Texture, second: &Texture) -> Option<f64> {
             let radius = 0.2 + 0.7 * ring as f64 / (RINGS - 1) as f64;
             for k in 0..ANGLES {
                 let (sin, cos) = (k as f64 / ANGLES as f64 * std::f64::consts::TAU).sin_cos();
-                values.push(texture.at(radius * cos, radius * sin).map(|(value, _, _)| value));
+                values.push(texture.at(radius * cos, radius * sin));
             }
         }
         values
@@ -106,133 +105,31 @@ fn searched(first: &Texture, second: &Texture) -> Option<f64> {
     best.1
 }
 
-/// Least squares from blurred faces to sharper ones: (cells of blur, steps) one after the other.
-fn refined(first: &Texture, second: &Texture, mut map: Map, rounds: &[(usize, usize)]) -> Option<Map> {
-    for (cells, steps) in rounds {
-        let (one, other) = (first.softened(*cells), second.softened(*cells));
-        for _ in 0..*steps {
-            map = aligned(&one, &other, &map)?;
+/// Steps until nothing moves, `most` at most, on faces blurred over so many cells; the second face is taken anew through the
+/// map found so far each time. Gives the map before the last step, and that step.
+fn matched(
+    faces: &Faces,
+    placings: &(Placing, Placing),
+    mut map: Map,
+    blur: usize,
+    most: usize,
+) -> Option<(Map, Step)> {
+    let seen = faces.0.cut(&placings.0);
+    let mut last = None;
+    for _ in 0..most {
+        if let Some(step) = last {
+            map = Step::taken(&step, &map)?;
         }
-        if !(0.8..1.25).contains(&map.a.hypot(map.b)) || map.x.hypot(map.y) > 0.25 {
+        if map.stretch().abs() > 0.25 || map.x.hypot(map.y) > 0.25 {
             return None;
         }
-    }
-    Some(map)
-}
-
-/// `u' = (a u - b v + x, b u + a v + y)`.
-#[derive(Debug, Clone, Copy)]
-struct Map {
-    a: f64,
-    b: f64,
-    x: f64,
-    y: f64,
-}
-
-impl Map {
-    const SAME: Map = Map { a: 1.0, b: 0.0, x: 0.0, y: 0.0 };
-
-    fn apply(&self, u: f64, v: f64) -> (f64, f64) {
-        (self.a * u - self.b * v + self.x, self.b * u + self.a * v + self.y)
-    }
-
-    /// First another map, then this.
-    fn after(&self, first: &Map) -> Map {
-        let (x, y) = self.apply(first.x, first.y);
-        Map { a: self.a * first.a - self.b * first.b, b: self.b * first.a + self.a * first.b, x, y }
-    }
-
-    /// Where a placing puts what this map leads to.
-    fn over(&self, placing: &Placing) -> Placing {
-        let middle = placing.at(self.x, self.y);
-        let from = |(x, y): (f64, f64)| (x - middle.0, y - middle.1);
-        let (right, down) = (self.apply(1.0, 0.0), self.apply(0.0, 1.0));
-        Placing { middle, across: from(placing.at(right.0, right.1)), down: from(placing.at(down.0, down.1)) }
-    }
-}
-
-/// One step towards the map that lays the second face on the first.
-///
-/// Least squares would be drawn off by noise: it lowers the fitted contrast, and a wrong contrast looks like a wrong size. So the
-/// two faces take turns, and what noise does to the one is taken back by the other:
-///
-/// ```text
-/// step = sum(w . grad B  A - w . grad A  B) / (2 sum (w . grad A) (w . grad B))          w what the number moves
-/// ```
-fn aligned(first: &Texture, second: &Texture, map: &Map) -> Option<Map> {
-    let mut normal = Normal::<4>::new();
-    let mut count = 0usize;
-    each(first, second, map, |u, v, here, there| {
-        let (own, other) = (moved(u, v, here), moved(u, v, there));
-        normal.cross(&own, &other, |k| other[k] * here.0 - own[k] * there.0);
-        count += 1;
-    });
-    if count < 600 {
-        return None;
-    }
-    let (by, _) = normal.solve()?;
-    Some(map.after(&Map { a: 1.0 + by[0], b: by[1], x: by[2], y: by[3] }))
-}
-
-/// What stretch, turn and shift change in the value at a place.
-fn moved(u: f64, v: f64, (_, gx, gy): Point) -> [f64; 4] {
-    [gx * u + gy * v, gy * u - gx * v, gx, gy]
-}
-
-/// Value and slopes.
-type Point = (f64, f64, f64);
-
-/// Walks over the cells that both know: disc coordinates, and both faces' values and slopes along those coordinates.
-fn each(first: &Texture, second: &Texture, map: &Map, mut with: impl FnMut(f64, f64, Point, Point)) {
-    for row in 0..SIDE {
-        for column in 0..SIDE {
-            if first.known[row * SIDE + column] == 0.0 {
-                continue;
-            }
-            let (u, v) = (disc(column as f64), disc(row as f64));
-            let (x, y) = map.apply(u, v);
-            if let (Some(here), Some((there, gx, gy))) = (first.at(u, v), second.at(x, y)) {
-                with(u, v, here, (there, map.a * gx + map.b * gy, map.a * gy - map.b * gx));
-            }
+        let (one, other) = Texture::together(&seen, &faces.1.cut(&map.over(&placings.1)));
+        let step = Step::between(&one.softened(blur), &other.softened(blur));
+        let small = step.size()? < 1e-5;
+        last = Some(step);
+        if small {
+            break;
         }
     }
-}
-
-/// The last step, and its error from how far tiles contradict each other: the jackknife (Quenouille 1956, Tukey 1958), each tile
-/// left out in its turn.
-fn settled(first: &Texture, second: &Texture, before: &Map, mirrored: bool) -> Option<Laid> {
-    let across = SIDE.div_ceil(TILE);
-    let mut tiles: Vec<Option<Normal<4>>> = vec![None; across * across];
-    let mut normal = Normal::<4>::new();
-    let (mut both, mut one2, mut other2) = (0.0, 1e-12, 1e-12);
-    let tile_of = |w: f64| (((w / super::texture::REACH + 1.0) / 2.0 * SIDE as f64) as usize / TILE).min(across - 1);
-    each(first, second, &Map::SAME, |u, v, here, there| {
-        let (own, other) = (moved(u, v, here), moved(u, v, there));
-        let right = |k: usize| other[k] * here.0 - own[k] * there.0;
-        normal.cross(&own, &other, right);
-        tiles[tile_of(v) * across + tile_of(u)].get_or_insert_with(Normal::new).cross(&own, &other, right);
-        both += here.0 * there.0;
-        one2 += here.0 * here.0;
-        other2 += there.0 * there.0;
-    });
-    let (by, _) = normal.solve()?;
-    let tiles: Vec<Normal<4>> = tiles.into_iter().flatten().collect();
-    if tiles.len() < LEAST_TILES {
-        return None;
-    }
-    let without: Vec<[f64; 4]> =
-        tiles.iter().map(|tile| normal.without(tile).solve().map(|(by, _)| by)).collect::<Option<_>>()?;
-    let n = tiles.len() as f64;
-    let variance = |k: usize| (n - 1.0) / n * without.iter().map(|other| (other[k] - by[k]).powi(2)).sum::<f64>();
-    let map = before.after(&Map { a: 1.0 + by[0], b: by[1], x: by[2], y: by[3] });
-    Some(Laid {
-        stretch: map.a.hypot(map.b) - 1.0,
-        turn: map.b.atan2(map.a),
-        shift: (map.x, map.y),
-        error: variance(0).sqrt(),
-        turn_error: variance(1).sqrt(),
-        shift_error: variance(2).max(variance(3)).sqrt(),
-        mirrored,
-        alike: both / (one2 * other2).sqrt(),
-    })
+    last.map(|step| (map, step))
 }

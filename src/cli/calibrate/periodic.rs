@@ -10,7 +10,7 @@ use crate::cli::settings::Settings;
 use crate::cli::settings::disk::{Disk, Files};
 use crate::cli::settings::nudges;
 use crate::cli::{Failure, answer, answer_json};
-use crate::registration::periodic::{BINS, Worm, learned};
+use crate::registration::periodic::{BINS, PeriodicError, Worm, learned};
 
 /// The settings of `calibrate periodic`.
 #[derive(Debug, Clone, Args)]
@@ -73,7 +73,10 @@ pub(super) fn run(arguments: &Arguments, settings: &Settings) -> Result<(), Fail
         peak_to_peak_arcsec: arguments.amplitude.unwrap_or(settings.periodic_error_arcsec),
         centring_arcsec: arguments.centring,
     };
-    let found = learned(&given, &worm).map_err(Failure::failed)?;
+    let found = learned(&given, &worm).map_err(|error| match error {
+        PeriodicError::OutOfRange { .. } => Failure::asked(error),
+        PeriodicError::Few(_) | PeriodicError::Short { .. } => Failure::failed(error),
+    })?;
     if arguments.json {
         return answer_json(&Told {
             nudges: given.len(),

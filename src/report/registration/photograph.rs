@@ -149,8 +149,14 @@ impl Face {
         if !how.maria {
             return shaded;
         }
-        let cell = |w: f64| (((w + 1.0) * 512.0) as usize).min(1023);
-        shaded * f64::from(map[cell(v) * 1024 + cell(u)])
+        // Between cells, bilinear: the nearest cell's would shift what is seen by up to half a cell, slowly varying over the disc.
+        let cell = |w: f64| ((w + 1.0) * 512.0 - 0.5).clamp(0.0, 1022.0);
+        let (x, y) = (cell(u), cell(v));
+        let at = |right: usize, down: usize| f64::from(map[(y as usize + down) * 1024 + x as usize + right]);
+        let (s, t) = (x.fract(), y.fract());
+        let upper = at(0, 0) * (1.0 - s) + at(1, 0) * s;
+        let lower = at(0, 1) * (1.0 - s) + at(1, 1) * s;
+        shaded * (upper * (1.0 - t) + lower * t)
     }
 
     /// Height of the limb in a direction, -1 to 1.
