@@ -18,6 +18,8 @@ use super::multiple::Field;
 use super::scene::{Scene, Star};
 use super::volume::Volume;
 
+/// Roots and exponentials.
+mod approximate;
 /// Rays through shaded cells.
 mod cast;
 /// Light that has scattered more than once.

@@ -1,17 +1,22 @@
 //! Light that has scattered more than once, as one eye sees it: once a frame, eight cells of its coarse grid at a time.
+//!
+//! It is spread over the voxels one axis after another: along x for the whole frame, along z for a plane, along y for a row.
 
 use rayon::prelude::*;
 
+use super::approximate::fused;
 use super::grid::{Grid, LANES};
 use super::march::CELL;
-use super::shade::Towards;
+use super::shade::{BANDS, Towards};
 use crate::physics::dust::multiple::Field;
 
-/// The source of each cell towards one eye, three bands; the fourth number is not used.
+/// The source towards one eye.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
+    /// Cells.
     size: [usize; 3],
-    values: Vec<[f32; CELL]>,
+    /// By cell along z, cell along y, band and padded voxel along x.
+    values: Vec<f32>,
     /// By axis and padded voxel: the cell below its centre, and the place between it and the next.
     places: [Vec<(u32, f32)>; 3],
 }
@@ -30,12 +35,12 @@ impl Seen {
             };
             (0..grid.padded[axis]).map(between).collect()
         });
-        Seen { size, values: vec![[0.0; CELL]; size[0] * size[1] * size[2]], places }
+        Seen { size, values: vec![0.0; BANDS * grid.padded[0] * size[1] * size[2]], places }
     }
 
     /// Looks at the field from an eye. `scale` takes its radiance into the flyer's numbers.
     pub(super) fn look(&mut self, field: &Field, grid: &Grid, towards: Towards, scale: f32) {
-        let size = self.size;
+        let (size, padded) = (self.size, grid.padded[0]);
         let far = match towards {
             Towards::Far(direction) => Some(field.harmonics().eight(direction.map(|d| [d; LANES]))),
             Towards::Eye(_) => None,
@@ -43,16 +48,23 @@ impl Seen {
         let centre =
             |axis: usize, cell: usize| (grid.edges()[axis] * ((cell as f64 + 0.5) / size[axis] as f64 - 0.5)) as f32;
         let xs: Vec<f32> = (0..size[0].next_multiple_of(LANES)).map(|x| centre(0, x)).collect();
-        self.values.par_chunks_mut(size[0]).enumerate().for_each(|(row, values)| {
+        let places = &self.places[0];
+        self.values.par_chunks_mut(BANDS * padded).enumerate().for_each(|(row, values)| {
             let (y, z) = (row % size[1], row / size[1]);
+            if (0..size[0]).all(|x| field.slot(x, y, z).is_none()) {
+                return;
+            }
             let (py, pz) = (centre(1, y), centre(2, z));
-            for (piece, (values, xs)) in values.chunks_mut(LANES).zip(xs.as_chunks::<LANES>().0).enumerate() {
+            // One more than there are, for a grid of one cell.
+            let mut cells = vec![[0.0f32; CELL]; size[0] + 1];
+            for (piece, (cells, xs)) in cells.chunks_mut(LANES).zip(xs.as_chunks::<LANES>().0).enumerate() {
                 let functions = match far {
                     Some(functions) => functions,
-                    None => field.harmonics().eight(towards.directions(xs, py, pz)),
+                    None => field.harmonics().eight(towards.directions::<false>(xs, py, pz)),
                 };
-                for (n, value) in values.iter_mut().enumerate() {
-                    let Some(slot) = field.slot(piece * LANES + n, y, z) else { continue };
+                for (n, cell) in cells.iter_mut().enumerate() {
+                    let x = piece * LANES + n;
+                    let Some(slot) = (x < size[0]).then(|| field.slot(x, y, z)).flatten() else { continue };
                     let mut sum = [0.0f32; CELL];
                     for (coefficients, all) in field.coefficients(0, slot).as_chunks::<CELL>().0.iter().zip(&functions)
                     {
@@ -61,53 +73,56 @@ impl Seen {
                         }
                     }
                     // A series cut off can fall below zero, light cannot.
-                    *value = sum.map(|light| light.max(0.0) * scale);
+                    *cell = sum.map(|light| light.max(0.0) * scale);
+                }
+            }
+            for (x, (low, u)) in places.iter().enumerate() {
+                let (a, b) = (cells[*low as usize], cells[*low as usize + 1]);
+                for band in 0..BANDS {
+                    values[band * padded + x] = a[band] + (b[band] - a[band]) * u;
                 }
             }
         });
     }
 
-    /// The glow along a row of padded voxels, between the cells along y and z.
-    pub(super) fn line(&self, y: usize, z: usize) -> Line<'_> {
-        let ((j, v), (k, w)) = (self.places[1][y], self.places[2][z]);
-        let (j, k) = (j as usize, k as usize);
-        let (above, behind) = ((j + 1).min(self.size[1] - 1), (k + 1).min(self.size[2] - 1));
-        let mut values = vec![[0.0f32; CELL]; self.size[0] + 1];
-        let shares = [
-            (j, k, (1.0 - v) * (1.0 - w)),
-            (above, k, v * (1.0 - w)),
-            (j, behind, (1.0 - v) * w),
-            (above, behind, v * w),
-        ];
-        for (j, k, share) in shares {
-            let row = &self.values[(k * self.size[1] + j) * self.size[0]..][..self.size[0]];
-            for (out, value) in values.iter_mut().zip(row) {
-                for band in 0..CELL {
-                    out[band] += value[band] * share;
-                }
-            }
-        }
-        Line { places: &self.places[0], values }
+    /// The glow in a plane of padded voxels: by cell along y, band and padded voxel along x.
+    #[inline(always)]
+    pub(super) fn plane(&self, z: usize, plane: &mut Vec<f32>) {
+        let (k, w) = self.places[2][z];
+        let (k, size) = (k as usize, self.places[0].len() * BANDS * self.size[1]);
+        let behind = (k + 1).min(self.size[2] - 1);
+        let (near, far) = (&self.values[k * size..][..size], &self.values[behind * size..][..size]);
+        plane.clear();
+        plane.extend(near.iter().zip(far).map(|(a, b)| a + (b - a) * w));
+    }
+
+    /// The glow along a row of a plane.
+    pub(super) fn line<'a>(&self, plane: &'a [f32], y: usize) -> Line<'a> {
+        let (j, share) = self.places[1][y];
+        let (j, padded) = (j as usize, self.places[0].len());
+        let row = |j: usize| &plane[j * BANDS * padded..][..BANDS * padded];
+        Line { below: row(j), above: row((j + 1).min(self.size[1] - 1)), share, padded }
     }
 }
 
-/// A row of a glow.
+/// A row of a glow: between two rows of cells.
 pub(super) struct Line<'a> {
-    places: &'a [(u32, f32)],
-    values: Vec<[f32; CELL]>,
+    below: &'a [f32],
+    above: &'a [f32],
+    share: f32,
+    padded: usize,
 }
 
 impl Line<'_> {
     /// The glow of eight padded voxels from `x` on.
     #[inline(always)]
-    pub(super) fn eight(&self, x: usize, light: &mut [[f32; CELL]; LANES]) {
-        let Some(places) = self.places.get(x..).and_then(|rest| rest.first_chunk::<LANES>()) else { return };
-        for (light, (low, u)) in light.iter_mut().zip(places) {
-            let (Some(b), Some(a)) = (self.values.get(*low as usize + 1), self.values.get(*low as usize)) else {
-                continue;
-            };
-            for band in 0..CELL {
-                light[band] = a[band] + (b[band] - a[band]) * u;
+    pub(super) fn eight<const FUSED: bool>(&self, x: usize, light: &mut [[f32; LANES]; BANDS]) {
+        for (band, light) in light.iter_mut().enumerate() {
+            let at = band * self.padded + x;
+            let eight = |row: &[f32]| row.get(at..).and_then(|rest| rest.first_chunk::<LANES>()).copied();
+            let (Some(a), Some(b)) = (eight(self.below), eight(self.above)) else { continue };
+            for n in 0..LANES {
+                light[n] = fused::<FUSED>(b[n] - a[n], self.share, a[n]);
             }
         }
     }

@@ -3,6 +3,7 @@
 //! A cell holds the light that leaves it towards the eye (three bands) and its density, 8 bytes. Two neighbours along x are one load
 //! of 16 bytes, so that a sample is four loads, not 32.
 
+use super::approximate::fused;
 use super::grid::LANES;
 use super::half;
 
@@ -73,11 +74,6 @@ struct Places {
     across: [f32; LANES],
     /// Shares of the four rows about it: this one, the next along y, along z, along both.
     shares: [[f32; LANES]; 4],
-}
-
-#[inline(always)]
-fn fused<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
 impl Places {
