@@ -48,6 +48,7 @@ use self::glow::Seen;
 use self::grid::Grid;
 use self::march::{Cell, DENSITY};
 use self::near::Surroundings;
+use self::near::hood::Hood;
 use self::occupancy::Occupancy;
 use self::shade::{BANDS, Lamp, Shading, Towards};
 use self::spread::Between;
@@ -261,7 +262,9 @@ impl Flyer {
                 }
             });
             let power = power(&self.scene, star, brightest);
-            self.lamps.push(Lamp { position: star.position / self.grid.unit, power, columns: self.grid.pad(&columns) });
+            let position = star.position / self.grid.unit;
+            let hood = Hood::new(&self.grid, &self.density, position);
+            self.lamps.push(Lamp { position, power, columns: self.grid.pad(&columns), hood });
         }
     }
 
@@ -355,8 +358,9 @@ impl Flyer {
         Ok(frame)
     }
 
-    /// The longest steps, up to two voxels, with which no pixel is further than `tolerance` of the brightest from what half voxels show:
-    /// a smooth nebula on a fine grid needs no more. Looked for in 64 x 64 pixels of what the camera sees.
+    /// The longest steps, up to three voxels, with which no pixel is further than `tolerance` of the brightest from what half voxels show,
+    /// and pixels on average no further than `tolerance` of their mean: a smooth nebula on a fine grid needs no more. Looked for in 64 x 64
+    /// pixels of what the camera sees.
     ///
     /// # Errors
     /// A quality that cannot be.
@@ -367,10 +371,12 @@ impl Flyer {
         };
         let fine = seen(STEPS[0])?;
         let white = fine.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+        let light: f32 = fine.iter().flatten().sum();
         for step in STEPS[1..].iter().rev() {
             let there = seen(*step)?;
-            let off = fine.iter().zip(&there).flat_map(|(a, b)| (0..BANDS).map(|n| (a[n] - b[n]).abs()));
-            if off.fold(0.0, f32::max) <= tolerance * white {
+            let off = fine.iter().flatten().zip(there.iter().flatten()).map(|(a, b)| (a - b).abs());
+            let (worst, sum) = off.fold((0.0f32, 0.0f32), |(worst, sum), off| (worst.max(off), sum + off));
+            if worst <= tolerance * white && sum <= tolerance * light {
                 return Ok(*step);
             }
         }
@@ -466,7 +472,7 @@ const UNSEEN: f32 = 1.0 / 600.0;
 const FINE: f64 = 0.25;
 
 /// Steps to choose from, voxels.
-const STEPS: [f64; 6] = [0.5, 0.75, 1.0, 1.25, 1.5, 2.0];
+const STEPS: [f64; 8] = [0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
 
 /// Pixels across and down of a look at what steps do.
 const LOOK: usize = 64;

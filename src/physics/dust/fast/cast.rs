@@ -16,6 +16,10 @@ const TILE: usize = 8;
 /// Pixels of a tile.
 const PIXELS: usize = TILE * TILE;
 
+/// Longest steps so near a star, both in voxels: what the grid holds of its light is a hill three voxels wide, and steep beyond.
+const NEAR_STEP: f64 = 0.75;
+const NEAR: f64 = 12.0;
+
 /// What the numbers in the cells are multiplied by: powers of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Times {
@@ -116,6 +120,23 @@ struct Lane {
     done: bool,
 }
 
+impl Lane {
+    /// What of a stretch is in the box, in as many steps as that takes.
+    #[inline(always)]
+    fn part(&self, whole: Stretch) -> Option<Stretch> {
+        let end = whole.from + whole.step * whole.steps as f32;
+        let (a, b) = (whole.from.max(self.enter), end.min(self.leave));
+        if a >= b {
+            return None;
+        }
+        if a == whole.from && b == end {
+            return Some(whole);
+        }
+        let steps = ((b - a) / whole.step).ceil().clamp(1.0, LANES as f32);
+        Some(Stretch { from: a, step: (b - a) / steps, steps: steps as usize, ..whole })
+    }
+}
+
 /// One pixel's ray in units of the grid.
 #[derive(Clone, Copy)]
 struct Aim {
@@ -152,32 +173,53 @@ pub(super) fn cast(
 
 /// Adds what the grid cannot hold of the light close to the stars, at all points.
 pub(super) fn add_near(casting: &Casting<'_>, camera: &Camera, points: Points<'_>, pixels: &mut [[f32; BANDS]]) {
-    let (width, height) = points.count;
+    let width = points.count.0;
     let points = Points { wanted: None, ..points };
     pixels.par_chunks_mut(TILE * width).enumerate().for_each(|(band, pixels)| {
         for x in (0..width).step_by(TILE) {
-            let tile = Tile { x, y: band * TILE, points };
-            let (right, bottom) = ((x + TILE - 1).min(width - 1), (tile.y + TILE - 1).min(height - 1));
-            let corners = [(x, tile.y), (right, tile.y), (x, bottom), (right, bottom)];
-            let rays = corners.map(|(x, y)| points.ray(camera, x, y).map(|ray| casting.grid.ray(&ray)));
-            // A tile on the rim of a domemaster has corners without rays: it is looked at in full.
-            let whole = rays.iter().all(Option::is_some);
-            let close =
-                if whole { close(rays.iter().flatten(), casting.lamps) } else { (0..casting.lamps.len()).collect() };
-            if close.is_empty() {
-                continue;
-            }
-            let (aims, count) = aims(casting.grid, camera, tile);
-            for aim in &aims[..count] {
-                let Some(pixel) = pixels.get_mut(aim.pixel / TILE * width + x + aim.pixel % TILE) else { continue };
-                for lamp in close.iter().filter_map(|index| casting.lamps.get(*index)) {
-                    let half = 0.5 * points.apart as f64 * casting.pixel(lamp.position);
-                    let more = casting.surroundings.missing(lamp, &aim.ray, (aim.enter, aim.leave), half);
-                    pixel.iter_mut().zip(more).for_each(|(pixel, more)| *pixel += more);
-                }
-            }
+            near_dispatched(casting, camera, Tile { x, y: band * TILE, points }, pixels);
         }
     });
+}
+
+/// The same in one tile, with the widest vectors that the processor has.
+fn near_dispatched(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+        #[expect(unsafe_code, reason = "the processor was asked whether it has these instructions")]
+        return unsafe { near_with_avx2(casting, camera, tile, pixels) };
+    }
+    near_tile::<false>(casting, camera, tile, pixels);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn near_with_avx2(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>) {
+    near_tile::<true>(casting, camera, tile, pixels);
+}
+
+#[inline(always)]
+fn near_tile<const FUSED: bool>(casting: &Casting<'_>, camera: &Camera, tile: Tile<'_>, pixels: Pixels<'_>) {
+    let Tile { x, y, points } = tile;
+    let (width, height) = points.count;
+    let (right, bottom) = ((x + TILE - 1).min(width - 1), (y + TILE - 1).min(height - 1));
+    let corners = [(x, y), (right, y), (x, bottom), (right, bottom)];
+    let rays = corners.map(|(x, y)| points.ray(camera, x, y).map(|ray| casting.grid.ray(&ray)));
+    // A tile on the rim of a domemaster has corners without rays: it is looked at in full.
+    let whole = rays.iter().all(Option::is_some);
+    let close = if whole { close(rays.iter().flatten(), casting.lamps) } else { (0..casting.lamps.len()).collect() };
+    if close.is_empty() {
+        return;
+    }
+    let (aims, count) = aims(casting.grid, camera, tile);
+    for aim in &aims[..count] {
+        let Some(pixel) = pixels.get_mut(aim.pixel / TILE * width + x + aim.pixel % TILE) else { continue };
+        for lamp in close.iter().filter_map(|index| casting.lamps.get(*index)) {
+            let half = 0.5 * points.apart as f64 * casting.pixel(lamp.position);
+            let more = casting.surroundings.missing::<FUSED>(lamp, &aim.ray, (aim.enter, aim.leave), half);
+            pixel.iter_mut().zip(more).for_each(|(pixel, more)| *pixel += more);
+        }
+    }
 }
 
 /// Stars that a ray between some may come close to.
@@ -274,6 +316,7 @@ fn cast_tile(
     let extinction = [red, green, blue, 0.0].map(|k| k / casting.times.density);
     let step = casting.step / bundle.pace;
     let length = step * LANES as f64;
+    let pieces = (casting.step / NEAR_STEP).ceil().max(1.0) as usize;
     // Stretches are counted from the eye, so that neighbouring tiles sample at the same lengths.
     let base = (bundle.enter / length).floor() * length;
     let mut lanes = [Lane::default(); PIXELS];
@@ -300,24 +343,24 @@ fn cast_tile(
         let until = from + length;
         let densest = bundle.densest(casting.occupancy, from, until) * casting.times.density;
         if densest > 0.0 {
-            let (begin, end) = ((from - base) as f32, (until - base) as f32);
-            for lane in lanes.iter_mut().filter(|lane| !lane.done) {
-                let (a, b) = (begin.max(lane.enter), end.min(lane.leave));
-                if a >= b {
-                    continue;
-                }
-                let whole = a == begin && b == end;
-                let steps = if whole { LANES } else { ((b - a) / step as f32).ceil().clamp(1.0, 8.0) as usize };
-                let size = if whole { step as f32 } else { (b - a) / steps as f32 };
-                kernel(cells, &mut lane.traveller, Stretch { from: a, step: size, steps, densest }, extinction);
-                work.samples += steps as u64;
-                let [red, green, blue, _] = lane.traveller.through;
-                let most = red.max(green).max(blue);
-                if most < casting.opaque {
-                    lane.done = true;
-                    alive -= 1;
-                    work.ended += 1;
-                    work.hidden = work.hidden.max(most);
+            let pieces = if bundle.near_a_star(casting, from, until) { pieces } else { 1 };
+            let length = length / pieces as f64;
+            for piece in 0..pieces {
+                let begin = from - base + piece as f64 * length;
+                let stretch =
+                    Stretch { from: begin as f32, step: (length / LANES as f64) as f32, steps: LANES, densest };
+                for lane in lanes.iter_mut().filter(|lane| !lane.done) {
+                    let Some(stretch) = lane.part(stretch) else { continue };
+                    kernel(cells, &mut lane.traveller, stretch, extinction);
+                    work.samples += stretch.steps as u64;
+                    let [red, green, blue, _] = lane.traveller.through;
+                    let most = red.max(green).max(blue);
+                    if most < casting.opaque {
+                        lane.done = true;
+                        alive -= 1;
+                        work.ended += 1;
+                        work.hidden = work.hidden.max(most);
+                    }
                 }
             }
         }
@@ -387,10 +430,26 @@ impl Bundle {
         if room > 2.0 { far } else { 0.0 }
     }
 
-    /// The most dust that any can meet between two lengths.
-    fn densest(&self, occupancy: &Occupancy, from: f64, until: f64) -> f32 {
+    /// Corners of a box around all between two lengths.
+    fn around(&self, from: f64, until: f64) -> (DVec3, DVec3) {
         let (a, b) = (self.origin + self.direction * from, self.origin + self.direction * until);
         let apart = DVec3::splat(self.apart(until));
-        occupancy.densest(a.min(b) - apart, a.max(b) + apart)
+        (a.min(b) - apart, a.max(b) + apart)
+    }
+
+    /// The most dust that any can meet between two lengths.
+    fn densest(&self, occupancy: &Occupancy, from: f64, until: f64) -> f32 {
+        let (low, high) = self.around(from, until);
+        occupancy.densest(low, high)
+    }
+
+    /// Whether any can come near a star between two lengths.
+    fn near_a_star(&self, casting: &Casting<'_>, from: f64, until: f64) -> bool {
+        let (low, high) = self.around(from, until);
+        let reach = casting.grid.per_length() * NEAR;
+        casting.lamps.iter().any(|lamp| {
+            let star = casting.grid.index(lamp.position);
+            star.cmpge(low - reach).all() && star.cmple(high + reach).all()
+        })
     }
 }

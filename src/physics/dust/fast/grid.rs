@@ -1,6 +1,6 @@
 //! The grid as the fast renderer sees it: one voxel of margin on each side, rows of whole vectors, lengths in voxels.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::physics::dust::camera::Ray;
 use crate::physics::dust::volume::Volume;
@@ -34,7 +34,8 @@ impl Grid {
         Grid { size, padded, unit, edges: volume.edges() / unit }
     }
 
-    fn counts(&self) -> DVec3 {
+    /// Voxels, as numbers.
+    pub(super) fn counts(&self) -> DVec3 {
         DVec3::new(self.size[0] as f64, self.size[1] as f64, self.size[2] as f64)
     }
 
@@ -87,12 +88,24 @@ impl Grid {
         padded
     }
 
+    /// The place of an index; that of the nearest in the box outside of it.
+    pub(super) fn place(&self, index: DVec3) -> DVec3 {
+        let counts = self.counts();
+        ((index - 0.5).clamp(DVec3::ZERO, counts) / counts - 0.5) * self.edges
+    }
+
     /// The padded values at a place inside the box, trilinear.
     pub(super) fn at(&self, values: &[f32], place: DVec3) -> f32 {
-        let index = self.index(place);
+        self.fetch(values, self.index(place).as_vec3())
+    }
+
+    /// The same at an index.
+    #[inline(always)]
+    fn fetch(&self, values: &[f32], index: Vec3) -> f32 {
         let along = |axis: usize| {
-            let at = index[axis].clamp(0.5, self.size[axis] as f64 + 0.5);
-            (at as usize, (at - (at as usize) as f64) as f32)
+            let at = index[axis].clamp(0.5, self.size[axis] as f32 + 0.5);
+            let low = at as u32;
+            (low as usize, at - low as f32)
         };
         let ((x, u), (y, v), (z, w)) = (along(0), along(1), along(2));
         let start = (z * self.padded[1] + y) * self.padded[0] + x;
@@ -100,7 +113,21 @@ impl Grid {
             Some([a, b]) => a + (b - a) * u,
             _ => 0.0,
         };
-        let plane = |at: usize| row(at) * (1.0 - v) + row(at + self.padded[0]) * v;
-        plane(start) * (1.0 - w) + plane(start + self.padded[0] * self.padded[1]) * w
+        let plane = |at: usize| {
+            let (a, b) = (row(at), row(at + self.padded[0]));
+            a + (b - a) * v
+        };
+        let (a, b) = (plane(start), plane(start + self.padded[0] * self.padded[1]));
+        a + (b - a) * w
+    }
+
+    /// The column of padded values between two points of a ray, steps of a voxel at most.
+    #[inline(always)]
+    pub(super) fn column(&self, values: &[f32], ray: &Ray, (from, until): (f64, f64)) -> f32 {
+        let steps = (until - from).ceil().max(1.0);
+        let step = (until - from) / steps;
+        let first = self.index(ray.origin + ray.direction * (from + 0.5 * step)).as_vec3();
+        let way = (ray.direction * self.per_length() * step).as_vec3();
+        (0..steps as usize).map(|n| self.fetch(values, first + way * n as f32)).sum::<f32>() * step as f32
     }
 }

@@ -9,10 +9,15 @@
 
 use glam::DVec3;
 
-use super::grid::Grid;
+use self::hood::Hood;
+use super::approximate::{fused, inverse_root, power_of_2};
+use super::grid::{Grid, LANES};
 use super::shade::{BANDS, Lamp, share_of_grid};
 use crate::physics::dust::camera::Ray;
 use crate::physics::dust::phase::HenyeyGreenstein;
+
+/// The dust about a star.
+pub(super) mod hood;
 
 /// How far from a star the grid does not hold all of its light, longest edges of a voxel.
 pub(super) const REACH: f32 = 6.0;
@@ -22,9 +27,6 @@ const ANGLES: f64 = 24.0;
 
 /// Fewest directions.
 const FEWEST: f64 = 4.0;
-
-/// Samples between the star and a point.
-const WAY: usize = 3;
 
 /// Nearer than this no ray is taken to pass: the radiance of an eye on the star has no bound.
 const NEAREST: f64 = 1e-3;
@@ -40,65 +42,126 @@ pub(super) struct Surroundings<'a> {
 impl Surroundings<'_> {
     /// The light that the grid does not hold of one star along a ray, which enters the box and leaves it at these lengths. `pixel` is
     /// half the width of a pixel where the star is.
-    pub(super) fn missing(&self, lamp: &Lamp, ray: &Ray, (enter, leave): (f64, f64), pixel: f64) -> [f32; BANDS] {
+    #[inline(always)]
+    pub(super) fn missing<const FUSED: bool>(
+        &self,
+        lamp: &Lamp,
+        ray: &Ray,
+        (enter, leave): (f64, f64),
+        pixel: f64,
+    ) -> [f32; BANDS] {
         let mut light = [0.0; BANDS];
         let to = lamp.position - ray.origin;
         let middle = to.dot(ray.direction);
-        let passing = (to - ray.direction * middle).length();
+        let closest = ray.direction * middle - to;
+        let passing = closest.length();
         let reach = f64::from(REACH);
         let half = (reach * reach - passing * passing).max(0.0).sqrt();
-        let (from, until) = ((middle - half).max(enter), (middle + half).min(leave));
+        let (from, until) = ((middle - half).max(enter) - middle, (middle + half).min(leave) - middle);
         if passing >= reach || from >= until {
             return light;
         }
-        let passing = (1.0 / mean_inverse(passing, pixel)).max(NEAREST);
-        let angle = |t: f64| ((t - middle) / passing).atan();
-        let (first, last) = (angle(from), angle(until));
+        let column = self.grid.column(self.density, ray, (enter, from + middle));
+        let way = Way { closest, direction: ray.direction, passing: (1.0 / mean_inverse(passing, pixel)).max(NEAREST) };
+        let (first, last) = ((from / way.passing).atan(), (until / way.passing).atan());
         let angles = (ANGLES * (last - first) / std::f64::consts::PI).ceil().max(FEWEST);
         let step = (last - first) / angles;
-        let mut column = self.column(ray, enter, from);
-        let mut before = (from, self.dust(ray, from));
-        for n in 0..angles as usize {
-            let phi = first + (n as f64 + 0.5) * step;
-            let t = (middle + passing * phi.tan()).clamp(from, until);
-            let place = ray.origin + ray.direction * t;
-            let density = self.dust(ray, t);
-            column += 0.5 * (density + before.1) * (t - before.0) as f32;
-            before = (t, density);
-            let distance = (passing / phi.cos()).min(reach);
-            // Rounding may leave a hair less than nothing.
-            let share = (1.0 - share_of_grid(distance as f32 / REACH)).max(0.0);
-            // Light comes from the star and goes against the ray.
-            let cosine = -(place - lamp.position).normalize_or_zero().dot(ray.direction);
-            let amount = f64::from(share) * self.phase.per_steradian(cosine) * step / passing;
-            let way = self.way(lamp.position, place);
-            for ((light, k), power) in light.iter_mut().zip(self.extinction).zip(lamp.power) {
-                *light += power * (-k * (way + column)).exp() * k * density * amount as f32;
-            }
+        let mut walk = Walk {
+            turn: (0.5 * step + first).sin_cos(),
+            step: step.sin_cos(),
+            column,
+            before: (from, lamp.hood.at(way.at(from))[0]),
+        };
+        for done in (0..angles as usize).step_by(LANES) {
+            let now = (angles as usize - done).min(LANES);
+            let points = walk.on(&way, &lamp.hood, (from, until), now);
+            self.add::<FUSED>(lamp, &points, (step / way.passing) as f32, &mut light);
         }
         light
     }
 
-    fn dust(&self, ray: &Ray, t: f64) -> f32 {
-        self.grid.at(self.density, ray.origin + ray.direction * t)
+    /// Adds the light of eight points, each of which stands for so much of the integral over dt / d^2.
+    #[inline(always)]
+    fn add<const FUSED: bool>(&self, lamp: &Lamp, points: &Points, part: f32, light: &mut [f32; BANDS]) {
+        let g = self.phase.asymmetry() as f32;
+        let (least, height) = ((1.0 - g) * (1.0 - g), part * (1.0 - g * g) / (4.0 * std::f32::consts::PI));
+        let mut amount = [0.0; LANES];
+        for n in 0..LANES {
+            // Rounding may leave a hair less than nothing.
+            let share = (1.0 - share_of_grid(points.distance[n] * (1.0 / REACH))).max(0.0);
+            let root = inverse_root::<FUSED>(fused::<FUSED>(2.0 * g, points.lack[n], least));
+            amount[n] = share * points.density[n] * height * root * root * root;
+        }
+        for ((light, k), power) in light.iter_mut().zip(self.extinction).zip(lamp.power) {
+            let mut sum = 0.0;
+            for n in 0..LANES {
+                sum += amount[n] * power_of_2::<FUSED>(-k * std::f32::consts::LOG2_E * points.column[n]);
+            }
+            *light += power * k * sum;
+        }
     }
+}
 
-    /// Column along a ray, steps of a voxel at most.
-    fn column(&self, ray: &Ray, from: f64, until: f64) -> f32 {
-        let steps = (until - from).ceil().max(1.0);
-        let step = (until - from) / steps;
-        (0..steps as usize).map(|n| self.dust(ray, from + (n as f64 + 0.5) * step)).sum::<f32>() * step as f32
+/// A ray past a star.
+struct Way {
+    /// From the star to the point of the ray closest to it.
+    closest: DVec3,
+    direction: DVec3,
+    /// How far the ray passes, averaged over the pixel.
+    passing: f64,
+}
+
+impl Way {
+    /// A point of the ray, so far behind the closest one; counted from the star.
+    fn at(&self, t: f64) -> DVec3 {
+        self.closest + self.direction * t
     }
+}
 
-    /// Column between the star and a place near it; outside the box there is none.
-    fn way(&self, star: DVec3, place: DVec3) -> f32 {
-        let half = self.grid.edges() * 0.5;
-        let dust = |share: f64| {
-            let point = star + (place - star) * share;
-            if point.abs().cmple(half).all() { self.grid.at(self.density, point) } else { 0.0 }
-        };
-        let sum: f32 = (0..WAY).map(|n| dust((n as f64 + 0.5) / WAY as f64)).sum();
-        sum * star.distance(place) as f32 / WAY as f32
+/// Eight points of a ray.
+#[derive(Default)]
+struct Points {
+    /// Density; 0 where there is no point.
+    density: [f32; LANES],
+    /// Distance from the star, averaged over the pixel.
+    distance: [f32; LANES],
+    /// 1 less the cosine of the angle that light from the star turns through.
+    lack: [f32; LANES],
+    /// Column from the star, and on to the eye.
+    column: [f32; LANES],
+}
+
+/// A walk along a ray in steps of equal angle.
+struct Walk {
+    /// Sine and cosine of the angle at the next point, and of the steps.
+    turn: (f64, f64),
+    step: (f64, f64),
+    /// Column between the eye and the point before.
+    column: f32,
+    /// Where the point before was, and its density.
+    before: (f64, f32),
+}
+
+impl Walk {
+    #[inline(always)]
+    fn on(&mut self, way: &Way, hood: &Hood, (from, until): (f64, f64), now: usize) -> Points {
+        let mut points = Points::default();
+        for n in 0..now {
+            let (sine, cosine) = self.turn;
+            let t = (way.passing * sine / cosine).clamp(from, until);
+            let place = way.at(t);
+            let [density, mean] = hood.at(place);
+            self.column += 0.5 * (density + self.before.1) * (t - self.before.0) as f32;
+            self.before = (t, density);
+            let distance = place.length().max(1e-12);
+            points.density[n] = density;
+            points.distance[n] = (way.passing / cosine) as f32;
+            // Light comes from the star and goes against the ray.
+            points.lack[n] = (1.0 + t / distance) as f32;
+            points.column[n] = self.column + mean * distance as f32;
+            self.turn = (sine * self.step.1 + cosine * self.step.0, cosine * self.step.1 - sine * self.step.0);
+        }
+        points
     }
 }
 

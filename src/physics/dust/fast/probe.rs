@@ -94,7 +94,7 @@ impl Probing<'_> {
         }
         // A pixel's width matters within a pixel of a star only, and a probe falls there once in a thousand frames.
         for lamp in self.lamps {
-            let near = self.surroundings.missing(lamp, ray, (enter, leave), 0.0);
+            let near = self.surroundings.missing::<false>(lamp, ray, (enter, leave), 0.0);
             light.iter_mut().zip(near).for_each(|(light, near)| *light += near);
         }
         light

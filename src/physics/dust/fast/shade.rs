@@ -11,6 +11,7 @@ use super::grid::{Grid, LANES};
 use super::half;
 use super::march::{Cell, DENSITY};
 use super::near::REACH;
+use super::near::hood::Hood;
 use super::occupancy::Occupancy;
 
 /// Bands that are seen together.
@@ -54,6 +55,8 @@ pub(super) struct Lamp {
     pub(super) power: [f32; BANDS],
     /// The column of dust from the star to each padded voxel.
     pub(super) columns: Vec<f32>,
+    /// The dust about it.
+    pub(super) hood: Hood,
 }
 
 /// What is shaded.
@@ -234,7 +237,9 @@ mod tests {
         for (g, star) in
             [(0.0, [0.2, 9.0, 0.1]), (0.6, [0.2, 0.3, -0.4]), (-0.9, [30.0, 7.0, 1.0]), (0.99, [1.0, -7.0, -9.0])]
         {
-            let lamp = Lamp { position: DVec3::from_array(star), power: [0.7, 1.0, 1.3], columns: Vec::new() };
+            let position = DVec3::from_array(star);
+            let hood = Hood::new(&grid, &vec![1.0; grid.len()], position);
+            let lamp = Lamp { position, power: [0.7, 1.0, 1.3], columns: Vec::new(), hood };
             let shading = Shading {
                 grid: &grid,
                 occupancy: &occupancy,

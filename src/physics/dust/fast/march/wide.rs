@@ -102,7 +102,7 @@ fn lost<const THIN: bool>(x: __m256) -> __m256 {
         let series = _mm256_fmadd_ps(x, inner, number(-0.5));
         return _mm256_fmadd_ps(_mm256_mul_ps(x, x), series, x);
     }
-    let y = _mm256_min_ps(_mm256_mul_ps(x, number(0.125)), number(8.0));
+    let y = _mm256_min_ps(_mm256_mul_ps(x, number(0.125)), number(2.0));
     let series = _mm256_fmadd_ps(y, number(1.0 / 120.0), number(-1.0 / 24.0));
     let series = _mm256_fmadd_ps(y, series, number(1.0 / 6.0));
     let series = _mm256_fmadd_ps(y, series, number(-0.5));
