@@ -22,6 +22,8 @@ use super::volume::Volume;
 mod approximate;
 /// Rays through shaded cells.
 mod cast;
+/// Pictures.
+mod frame;
 /// Light that has scattered more than once.
 mod glow;
 /// The grid and its margin.
@@ -36,116 +38,34 @@ mod near;
 mod occupancy;
 /// The same rays in finer steps with nothing from the grid, in a few pixels.
 mod probe;
+/// How much is done.
+mod quality;
 /// The light of each voxel towards the eye.
 mod shade;
 /// Pixels between rays.
 mod spread;
+/// How long steps can be.
+mod steps;
 
 pub use cast::Work;
+pub use frame::{Believed, Frame};
+pub use quality::{FastError, Quality};
 
 use self::cast::Times;
+use self::cast::points::{self, Points};
+use self::frame::spread;
 use self::glow::Seen;
 use self::grid::Grid;
 use self::march::{Cell, DENSITY};
 use self::near::Surroundings;
 use self::near::hood::Hood;
+use self::near::tiles;
 use self::occupancy::Occupancy;
 use self::shade::{BANDS, Lamp, Shading, Towards};
 use self::spread::Between;
 
 /// Widest and highest frame, pixels.
 pub const LARGEST_FRAME: usize = 8192;
-
-/// Why there is no flight.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum FastError {
-    /// More bands than the kernel has lanes.
-    #[error("{0} bands: one flies with 1 to 3; the renderer for pictures has any number")]
-    Bands(usize),
-    /// No pixels, or too many.
-    #[error("a frame of {0} x {1} pixels: each side has 1 to 8192")]
-    Size(usize, usize),
-    /// Steps that are none.
-    #[error("steps of {0} voxels: they are from 0.05 to 8")]
-    Step(f64),
-    /// A share that is none.
-    #[error("rays end where a share of {0} comes through: it is from 0 to less than 1")]
-    Opaque(f64),
-}
-
-/// How much is done for a frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quality {
-    /// Steps along rays, voxels.
-    pub step: f64,
-    /// A ray ends where no more than this share of the light behind comes through; 0 never.
-    pub opaque: f64,
-    /// Frames are cast with rays this many pixels apart, 1 to 8, and spread over the pixels between.
-    pub coarse: usize,
-    /// With rays two pixels apart: a pixel between them gets a ray of its own where its neighbours say by more than this share what it is,
-    /// see `spread`; 0 for no such rays.
-    pub refine: f64,
-    /// Whether empty bricks are passed over.
-    pub skip: bool,
-    /// Pixels in which the error is looked for.
-    pub probes: usize,
-}
-
-impl Quality {
-    /// A ray for each pixel, steps of a voxel.
-    pub const FULL: Quality =
-        Quality { step: 1.0, opaque: 1.0 / 1024.0, coarse: 1, refine: 0.0, skip: true, probes: 0 };
-    /// A ray for each pixel that its neighbours do not tell, steps of a voxel.
-    pub const FLYING: Quality = Quality { coarse: 2, refine: 1.0 / 512.0, ..Quality::FULL };
-    /// A ray for four pixels, steps of a voxel and a half: for keys held down.
-    pub const MOVING: Quality =
-        Quality { step: 1.5, opaque: 1.0 / 256.0, coarse: 2, refine: 0.0, skip: true, probes: 0 };
-    /// A ray for 16 pixels, steps of two voxels: for slow machines.
-    pub const DRAFT: Quality =
-        Quality { step: 2.0, opaque: 1.0 / 128.0, coarse: 4, refine: 0.0, skip: true, probes: 0 };
-    /// Half steps, and nothing left out.
-    pub const EVERYTHING: Quality = Quality { step: 0.5, opaque: 0.0, coarse: 1, refine: 0.0, skip: false, probes: 0 };
-
-    fn check(&self) -> Result<(), FastError> {
-        if !(0.05..=8.0).contains(&self.step) {
-            return Err(FastError::Step(self.step));
-        }
-        if !(0.0..1.0).contains(&self.opaque) {
-            return Err(FastError::Opaque(self.opaque));
-        }
-        Ok(())
-    }
-}
-
-/// What a frame's pixels may be off by, as shares of the mean light of the pixels probed.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Believed {
-    /// Mean error.
-    pub mean: f32,
-    /// Worst error.
-    pub worst: f32,
-    /// Pixels probed.
-    pub probes: usize,
-}
-
-/// A picture seen in flight.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
-    /// Pixels across.
-    pub width: usize,
-    /// Pixels down.
-    pub height: usize,
-    /// Radiance, row 0 on top; bands that the scene does not have are 0.
-    pub pixels: Vec<[f32; 3]>,
-    /// The share of the light from behind the dust that comes through each pixel.
-    pub through: Vec<[f32; 3]>,
-    /// No pixel lacks more radiance than this for what was passed over or ended early.
-    pub left_out: f32,
-    /// How far from finer steps without the grid's light; nothing where no pixel was probed.
-    pub believed: Option<Believed>,
-    /// What was done.
-    pub work: Work,
-}
 
 /// A nebula, made ready to fly through.
 pub struct Flyer {
@@ -304,9 +224,9 @@ impl Flyer {
             surroundings: &surroundings,
             step: quality.step,
             opaque: quality.opaque as f32,
-            middle: cast::middle(&self.grid, camera, (width, height)),
+            middle: points::middle(&self.grid, camera, (width, height)),
         };
-        let points = cast::Points { picture: (width, height), count, apart: coarse, first, wanted: None };
+        let points = Points { picture: (width, height), count, apart: coarse, first, wanted: None };
         let mut work = cast::cast(&casting, camera, points, &mut pixels, &mut through);
         // Behind dense dust everything is dark: what was ended early may outshine what is seen. Then rays go on, to a bound.
         let seen = pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
@@ -325,11 +245,11 @@ impl Flyer {
             let mut picture;
             (picture, wanted) = between(&pixels).picture(width, height, share, typical);
             let (mut clear, _) = between(&through).picture(width, height, share, 1.0);
-            all = cast::Points { count: (width, height), apart: 1, wanted: Some(&wanted), ..points };
+            all = Points { count: (width, height), apart: 1, wanted: Some(&wanted), ..points };
             work = work.with(cast::cast(&casting, camera, all, &mut picture, &mut clear));
             (pixels, through) = (picture, clear);
         }
-        cast::add_near(&casting, camera, all, &mut pixels);
+        tiles::add_near(&casting, camera, all, &mut pixels);
         let cast_size = if refine { (width, height) } else { count };
         let scale = self.scale as f32;
         pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|value| value * scale));
@@ -356,31 +276,6 @@ impl Flyer {
             frame.believed = Some(probe::believed(&probing, camera, &frame, quality.probes));
         }
         Ok(frame)
-    }
-
-    /// The longest steps, up to three voxels, with which no pixel is further than `tolerance` of the brightest from what half voxels show,
-    /// and pixels on average no further than `tolerance` of their mean: a smooth nebula on a fine grid needs no more. Looked for in 64 x 64
-    /// pixels of what the camera sees.
-    ///
-    /// # Errors
-    /// A quality that cannot be.
-    pub fn longest_step(&mut self, camera: &Camera, quality: &Quality, tolerance: f32) -> Result<f64, FastError> {
-        let mut seen = |step| {
-            let quality = Quality { step, coarse: 1, probes: 0, ..*quality };
-            self.frame(camera, LOOK, LOOK, &quality).map(|frame| frame.pixels)
-        };
-        let fine = seen(STEPS[0])?;
-        let white = fine.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
-        let light: f32 = fine.iter().flatten().sum();
-        for step in STEPS[1..].iter().rev() {
-            let there = seen(*step)?;
-            let off = fine.iter().flatten().zip(there.iter().flatten()).map(|(a, b)| (a - b).abs());
-            let (worst, sum) = off.fold((0.0f32, 0.0f32), |(worst, sum), off| (worst.max(off), sum + off));
-            if worst <= tolerance * white && sum <= tolerance * light {
-                return Ok(*step);
-            }
-        }
-        Ok(STEPS[0])
     }
 
     fn strongest(&self) -> f32 {
@@ -471,39 +366,8 @@ const UNSEEN: f32 = 1.0 / 600.0;
 /// Steps of a probe, as shares of the frame's.
 const FINE: f64 = 0.25;
 
-/// Steps to choose from, voxels.
-const STEPS: [f64; 8] = [0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
-
-/// Pixels across and down of a look at what steps do.
-const LOOK: usize = 64;
-
 /// Most spacings of the lattice of columns.
 const FINEST_LATTICE: usize = 64;
-
-/// A frame of few pixels spread over many, linearly between their centres.
-fn spread(frame: &Frame, width: usize, height: usize, coarse: usize) -> Frame {
-    let along = |at: usize, size: usize| {
-        let place = ((at as f32 + 0.5) / coarse as f32 - 0.5).clamp(0.0, (size - 1) as f32);
-        (place as usize, (place as usize + 1).min(size - 1), place.fract())
-    };
-    let between = |from: &[[f32; BANDS]]| {
-        let mut to = vec![[0.0; BANDS]; width * height];
-        to.par_chunks_mut(width).enumerate().for_each(|(row, to)| {
-            let (top, bottom, v) = along(row, frame.height);
-            let (top, bottom) = (&from[top * frame.width..], &from[bottom * frame.width..]);
-            for (column, to) in to.iter_mut().enumerate() {
-                let (left, right, u) = along(column, frame.width);
-                for (band, to) in to.iter_mut().enumerate() {
-                    let line = |from: &[[f32; BANDS]]| from[left][band] * (1.0 - u) + from[right][band] * u;
-                    *to = line(top) * (1.0 - v) + line(bottom) * v;
-                }
-            }
-        });
-        to
-    };
-    let (pixels, through) = (between(&frame.pixels), between(&frame.through));
-    Frame { width, height, pixels, through, ..*frame }
-}
 
 fn single(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]

@@ -12,7 +12,8 @@ const UP: f32 = f32::from_bits((127 + 112) << 23);
 /// The nearest number of 16 bits to one that is not negative; larger than [`MOST`] becomes that.
 #[inline(always)]
 pub(super) fn half(x: f32) -> u16 {
-    let bits = (x.min(MOST) * (1.0 / UP)).to_bits();
+    let x = if x < MOST { x } else { MOST };
+    let bits = (x * (1.0 / UP)).to_bits();
     // To the nearest, and of two as near the even one.
     (bits.wrapping_add(0x0fff + ((bits >> 13) & 1)) >> 13) as u16
 }

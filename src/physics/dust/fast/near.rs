@@ -18,6 +18,8 @@ use crate::physics::dust::phase::HenyeyGreenstein;
 
 /// The dust about a star.
 pub(super) mod hood;
+/// The light close to the stars in a picture.
+pub(super) mod tiles;
 
 /// How far from a star the grid does not hold all of its light, longest edges of a voxel.
 pub(super) const REACH: f32 = 6.0;
@@ -86,16 +88,16 @@ impl Surroundings<'_> {
         let g = self.phase.asymmetry() as f32;
         let (least, height) = ((1.0 - g) * (1.0 - g), part * (1.0 - g * g) / (4.0 * std::f32::consts::PI));
         let mut amount = [0.0; LANES];
-        for n in 0..LANES {
+        for (n, amount) in amount.iter_mut().enumerate() {
             // Rounding may leave a hair less than nothing.
             let share = (1.0 - share_of_grid(points.distance[n] * (1.0 / REACH))).max(0.0);
             let root = inverse_root::<FUSED>(fused::<FUSED>(2.0 * g, points.lack[n], least));
-            amount[n] = share * points.density[n] * height * root * root * root;
+            *amount = share * points.density[n] * height * root * root * root;
         }
         for ((light, k), power) in light.iter_mut().zip(self.extinction).zip(lamp.power) {
             let mut sum = 0.0;
-            for n in 0..LANES {
-                sum += amount[n] * power_of_2::<FUSED>(-k * std::f32::consts::LOG2_E * points.column[n]);
+            for (amount, column) in amount.iter().zip(points.column) {
+                sum += amount * power_of_2::<FUSED>(-k * std::f32::consts::LOG2_E * column);
             }
             *light += power * k * sum;
         }

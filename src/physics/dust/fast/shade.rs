@@ -5,7 +5,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::approximate::{fused, inverse_root, power_of_2};
+use super::approximate::{fused, inverse_root, larger, power_of_2};
 use super::glow::Seen;
 use super::grid::{Grid, LANES};
 use super::half;
@@ -33,13 +33,18 @@ impl Towards {
         match self {
             Towards::Far(direction) => direction.map(|d| [d; LANES]),
             Towards::Eye(eye) => {
+                let mut inverse = [0.0; LANES];
                 let mut to = [[0.0; LANES]; 3];
                 let (y, z) = (eye[1] - y, eye[2] - z);
                 let rest = y * y + z * z;
                 for n in 0..LANES {
-                    let x = eye[0] - xs[n];
-                    let inverse = inverse_root::<FUSED>(fused::<FUSED>(x, x, rest).max(1e-12));
-                    (to[0][n], to[1][n], to[2][n]) = (x * inverse, y * inverse, z * inverse);
+                    to[0][n] = eye[0] - xs[n];
+                    inverse[n] = inverse_root::<FUSED>(larger(fused::<FUSED>(to[0][n], to[0][n], rest), 1e-12));
+                }
+                for n in 0..LANES {
+                    to[0][n] *= inverse[n];
+                    to[1][n] = y * inverse[n];
+                    to[2][n] = z * inverse[n];
                 }
                 to
             }
@@ -153,7 +158,7 @@ fn shade_plane<const FUSED: bool>(
                 }
             }
             for n in 0..LANES {
-                most[n] = light[0][n].max(light[1][n]).max(light[2][n]).max(most[n]);
+                most[n] = larger(larger(larger(light[0][n], light[1][n]), light[2][n]), most[n]);
             }
             keep(cells, &light, shading.times);
         }
@@ -164,11 +169,11 @@ fn shade_plane<const FUSED: bool>(
 /// Puts the light of eight cells into them, `times` as much.
 #[inline(always)]
 fn keep(cells: &mut [Cell; LANES], light: &[Eight; BANDS], times: f32) {
-    let [red, green, blue] = light.map(|light| light.map(|light| u32::from(half::half(light * times))));
     let (mut low, mut high) = ([0u32; LANES], [0u32; LANES]);
     for n in 0..LANES {
-        low[n] = red[n] | green[n] << 16;
-        high[n] = blue[n];
+        let number = |band: usize| u32::from(half::half(light[band][n] * times));
+        low[n] = number(0) | number(1) << 16;
+        high[n] = number(2);
     }
     for n in 0..LANES {
         cells[n] = cells[n] & DENSITY | u64::from(high[n]) << 32 | u64::from(low[n]);
@@ -194,7 +199,7 @@ fn lit<const FUSED: bool>(
     let mut inverses = [0.0; LANES];
     for n in 0..LANES {
         let x = xs[n] - star.x;
-        let inverse = inverse_root::<FUSED>(fused::<FUSED>(x, x, rest).max(1e-12));
+        let inverse = inverse_root::<FUSED>(larger(fused::<FUSED>(x, x, rest), 1e-12));
         // 1 - cos from the difference of the two directions keeps its digits where they nearly agree.
         let part = |way: f32, to: f32| fused::<FUSED>(way, inverse, -to);
         let (u, v, w) = (part(x, to[0][n]), part(y, to[1][n]), part(z, to[2][n]));
