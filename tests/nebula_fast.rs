@@ -197,6 +197,17 @@ fn steps_are_as_long_as_a_tolerance_allows() {
 }
 
 #[test]
+fn long_steps_miss_nothing_of_the_light_close_to_a_star() {
+    // Even dust: what is steep is the light alone. Steps of three voxels there would be off by a 200th of the brightest pixel.
+    let volume = Volume::new([48; 3], DVec3::splat(2.0), vec![1.0; 48 * 48 * 48]).unwrap();
+    let mut flyer = Flyer::new(&volume, &scene(1.0, 0.6, 0.6, &[STAR, DVec3::new(0.5, 0.3, 0.2)]), None).unwrap();
+    let camera = window(DVec3::new(1.0, 0.8, 2.6));
+    let mut seen = |step| flyer.frame(&camera, 96, 96, &Quality { step, ..Quality::FULL }).unwrap();
+    let (fine, long) = (seen(0.25), seen(3.0));
+    assert!(worst(&fine, &long) < brightest(&fine) / 512.0, "{} of {}", worst(&fine, &long), brightest(&fine));
+}
+
+#[test]
 fn two_stars_add_up_and_turning_scene_and_eye_together_changes_nothing() {
     let volume = ball(24);
     let camera = window(DVec3::new(1.0, 0.8, 2.6));
