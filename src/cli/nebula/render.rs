@@ -108,6 +108,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let begin = Instant::now();
     if let Some(orders) = arguments.orders {
+        if glow.is_some() {
+            return Err(Failure::asked(
+                "--orders parts the stars' light by how often it was scattered, and the dust's own was never: leave --emission out",
+            ));
+        }
         return arguments.by_order(&volume, &scene, &view, &wish, (orders, &said));
     }
     let (light, told) = arguments.light((model, literal), &volume, &scene, &said)?;
