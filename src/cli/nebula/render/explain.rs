@@ -71,7 +71,8 @@ impl Facts<'_> {
             self.seconds() + self.light_time.as_secs_f64(),
         );
         if self.made.model_error > 0.0 {
-            text += &format!("; the model's own noise and rounding {:.1} %", 100.0 * self.made.model_error);
+            let adds = if self.made.name == "multiple" { "what it adds to single scattering" } else { "its light" };
+            text += &format!("; the model itself, cautiously, {:.1} % of {adds}", 100.0 * self.made.model_error);
         }
         if let Some(what) = self.made.leaves_out {
             text += &format!("\n{what}");
