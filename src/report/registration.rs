@@ -128,7 +128,7 @@ pub fn rows(seeds: u64, clock: &dyn Fn() -> Duration, mut told: impl FnMut(&str)
         }
         for (method, list) in ["limb", "maria", "both"].into_iter().zip(&errors) {
             let most = |of: &dyn Fn(&(f64, f64)) -> f64| list.iter().map(of).fold(0.0, f64::max);
-            let squares: f64 = list.iter().map(|(off, _)| off * off).sum();
+            let squares = list.iter().fold(0.0, |sum, (off, _)| sum + off * off);
             rows.push(Row {
                 scene: scene.name,
                 method,
