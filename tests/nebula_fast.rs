@@ -187,8 +187,8 @@ fn steps_are_as_long_as_a_tolerance_allows() {
         let step = flyer.longest_step(&camera, &Quality::FULL, tolerance).unwrap();
         let mut seen = |step| flyer.frame(&camera, 160, 160, &Quality { step, ..Quality::FULL }).unwrap();
         let (fine, there) = (seen(0.5), seen(step));
-        // 64 x 64 pixels were looked at, these are others.
-        let allowed = if step > 0.5 { 1.5 * tolerance * brightest(&fine) } else { 0.0 };
+        // 64 x 64 pixels were looked at, these are others: the worst was not seen.
+        let allowed = if step > 0.5 { tolerance * brightest(&fine) } else { 0.0 };
         assert!(worst(&fine, &there) <= allowed, "{tolerance}: {step}, {}", worst(&fine, &there));
         assert!(step >= before, "{tolerance}: {step} {before}");
         before = step;

@@ -125,5 +125,9 @@ fn listed(scene: &Scene, almanac: &mut Almanac) -> Vec<facts::Listed> {
     let radius = scene.instrument.true_field() / 2.0;
     let mut found = catalogue.within(&centre, radius, FAINTEST);
     found.bodies = almanac.within(&scene.moment, scene.site.as_ref(), &centre, radius);
+    // A planet at the edge has moons beyond it.
+    for body in &mut found.bodies {
+        body.moons.retain(|(_, position)| position.separation(&centre) <= radius);
+    }
     facts::listed(&found, &centre, catalogue)
 }

@@ -556,8 +556,17 @@ fn planets_are_listed_with_their_moons_and_tab_takes_the_planet() {
     // Titan's orbit is 20 radii of Saturn.
     let titan = listed("Titan").unwrap();
     assert!(titan.what == "moon" && titan.separation.to_arcseconds() < 220.0 && !titan.choosable, "{titan:?}");
+    let radius = model.instrument.true_field() / 2.0;
+    assert!(model.field.iter().filter(|listed| listed.what.starts_with("moon")).all(|moon| moon.separation <= radius));
     let _ = update(&mut model, Event::Key(Key::Tab));
-    assert_eq!(model.target.map(|target| target.name).as_deref(), Some("Saturn"));
+    assert_eq!(model.target.as_ref().map(|target| target.name.as_str()), Some("Saturn"));
+
+    // From beside the planet a narrow field holds it and not those of its moons that are on the other side.
+    let all = model.field.len();
+    let _ = update(&mut model, Event::Key(Key::Char('w')));
+    assert!(model.instrument.true_field() / 2.0 != radius && model.field.len() != all, "{:?}", model.field);
+    let radius = model.instrument.true_field() / 2.0;
+    assert!(model.field.iter().all(|listed| listed.choosable || listed.separation <= radius), "{:?}", model.field);
 }
 
 #[test]
